@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# How every target of the project is compiled: warnings, instruction set, sanitizers.
+
+# planemap_options: link it PRIVATE to each of our own targets.
+add_library(planemap_options INTERFACE)
+target_include_directories(planemap_options INTERFACE ${CMAKE_SOURCE_DIR}/modules)
+target_compile_options(planemap_options INTERFACE -Wall -Wextra -Wconversion -Werror)
+
+# The instruction set is global: Eigen's alignment must be the same in every file that shares a type.
+if(PLANEMAP_NATIVE)
+    add_compile_options(-march=native)
+elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+    add_compile_options(-march=${PLANEMAP_ARCH})
+endif()
+# Eigen aligns to 16 bytes whatever the instruction set, as Debian's PCL, Ceres and OpenCV were built to.
+add_compile_definitions(EIGEN_MAX_ALIGN_BYTES=16)
+# No fused multiply-add behind the reader's back: the same bytes out on every machine of an architecture.
+add_compile_options(-ffp-contract=off)
+
+if(PLANEMAP_SANITIZE)
+    add_compile_options(-fsanitize=${PLANEMAP_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all -g)
+    add_link_options(-fsanitize=${PLANEMAP_SANITIZE})
+endif()
+
+# planemap_library(NAME SOURCES... [PUBLIC libs...] [PRIVATE libs...])
+function(planemap_library name)
+    cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+    add_library(${name} STATIC ${ARG_SOURCES})
+    target_include_directories(${name} PUBLIC ${CMAKE_SOURCE_DIR}/modules)
+    target_link_libraries(${name} PUBLIC ${ARG_PUBLIC} PRIVATE planemap_options ${ARG_PRIVATE})
+endfunction()
+
+# planemap_program(NAME SOURCES... LIBS...): an executable in build/bin.
+function(planemap_program name)
+    cmake_parse_arguments(ARG "" "" "SOURCES;LIBS" ${ARGN})
+    add_executable(${name} ${ARG_SOURCES})
+    target_link_libraries(${name} PRIVATE planemap_options ${ARG_LIBS})
+    install(TARGETS ${name} RUNTIME DESTINATION bin)
+endfunction()

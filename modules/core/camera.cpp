@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/camera.hpp"
+
+#include <cmath>
+
+#include "core/validation.hpp"
+
+namespace planemap {
+
+namespace {
+
+void check(const PinholeCamera& camera, const std::string& name, FieldErrors& errors) {
+    constexpr int kMaxSide = 8192;
+    const auto size = [&](int value, const char* field) {
+        errors.require(value >= 1 && value <= kMaxSide, name + field, value, "1 to 8192");
+    };
+    const auto focal = [&](double value, const char* field) {
+        errors.require(std::isfinite(value) && value > 0, name + field, value, "finite and greater than 0");
+    };
+    const auto centre = [&](double value, const char* field) {
+        errors.require(std::isfinite(value), name + field, value, "finite");
+    };
+    size(camera.width, ".width");
+    size(camera.height, ".height");
+    focal(camera.fx, ".fx");
+    focal(camera.fy, ".fy");
+    centre(camera.cx, ".cx");
+    centre(camera.cy, ".cy");
+}
+
+}  // namespace
+
+void CameraInfo::validate() const {
+    FieldErrors errors("camera info");
+    errors.require(serial.size() <= 64, "serial", serial.substr(0, 64) + "...", "at most 64 characters");
+    check(depth, "depth", errors);
+    check(color, "color", errors);
+    errors.require(is_valid(color_from_depth), "color_from_depth", "not a rigid transform",
+                   "a rigid transform");
+    errors.require(std::isfinite(depth_units_per_metre) && depth_units_per_metre > 0, "depth_units_per_metre",
+                   depth_units_per_metre, "finite and greater than 0");
+    errors.require(depth_min_m >= 0, "depth_min_m", depth_min_m, "at least 0");
+    errors.require(std::isfinite(depth_max_m) && depth_max_m > depth_min_m, "depth_max_m", depth_max_m,
+                   "finite and greater than depth_min_m");
+    errors.require(std::isfinite(noise.base_m) && noise.base_m >= 0, "noise.base_m", noise.base_m,
+                   "at least 0");
+    errors.require(std::isfinite(noise.quadratic_per_m) && noise.quadratic_per_m >= 0,
+                   "noise.quadratic_per_m", noise.quadratic_per_m, "at least 0");
+    errors.require(std::isfinite(noise.offset_m), "noise.offset_m", noise.offset_m, "finite");
+    errors.throw_if_any();
+}
+
+bool operator==(const CameraInfo& a, const CameraInfo& b) {
+    return a.serial == b.serial && a.depth == b.depth && a.color == b.color && a.registered == b.registered &&
+           a.color_from_depth.matrix() == b.color_from_depth.matrix() &&
+           a.depth_units_per_metre == b.depth_units_per_metre && a.depth_min_m == b.depth_min_m &&
+           a.depth_max_m == b.depth_max_m && a.noise == b.noise;
+}
+
+}  // namespace planemap

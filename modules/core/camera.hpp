@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "core/pose.hpp"
+
+namespace planemap {
+
+/// A pinhole camera. Optical frame: x right, y down, z forward; pixel centres at integers.
+struct PinholeCamera {
+    int width = 0, height = 0;  ///< pixels
+    double fx = 0, fy = 0;      ///< focal lengths, pixels
+    double cx = 0, cy = 0;      ///< principal point, pixels
+
+    /// Point at depth z (metres along the optical axis) seen at pixel (u, v).
+    Eigen::Vector3d unproject(double u, double v, double z) const {
+        return {(u - cx) * z / fx, (v - cy) * z / fy, z};
+    }
+    /// Pixel of a point with z > 0.
+    Eigen::Vector2d project(const Eigen::Vector3d& p) const {
+        return {fx * p.x() / p.z() + cx, fy * p.y() / p.z() + cy};
+    }
+    /// True when the pixel (u, v) falls on the image.
+    bool sees(const Eigen::Vector2d& pixel) const {
+        return pixel.x() >= -0.5 && pixel.y() >= -0.5 && pixel.x() < width - 0.5 && pixel.y() < height - 0.5;
+    }
+    friend bool operator==(const PinholeCamera&, const PinholeCamera&) = default;
+};
+
+/// Noise of the depth sensor: standard deviation of depth at z metres, base + quadratic (z - offset)^2,
+/// metres. The default is the Kinect's (Nguyen et al. 2012).
+struct DepthNoise {
+    double base_m = 0.0012;
+    double quadratic_per_m = 0.0019;
+    double offset_m = 0.4;
+
+    double sigma(double z) const { return base_m + quadratic_per_m * (z - offset_m) * (z - offset_m); }
+    friend bool operator==(const DepthNoise&, const DepthNoise&) = default;
+};
+
+/// What an RGB-D sensor is: the project's "camera frame" is the optical frame of `color`. A sensor without
+/// colour has color equal to depth.
+struct CameraInfo {
+    std::string serial;                        ///< or a name that tells sensors apart; at most 64 characters
+    PinholeCamera depth;                       ///< of the depth image as it arrives
+    PinholeCamera color;                       ///< of the colour image as it arrives
+    bool registered = true;                    ///< each depth pixel already lies at its colour pixel
+    Pose color_from_depth = Pose::Identity();  ///< identity when registered
+    double depth_units_per_metre = 1000;       ///< raw depth / this = metres
+    double depth_min_m = 0.3, depth_max_m = 8.0;  ///< readings outside are not trusted
+    DepthNoise noise;
+
+    double metres(std::uint16_t raw) const { return raw / depth_units_per_metre; }
+    /// Throws std::invalid_argument that names every bad field (sizes 1 to 8192, focal lengths finite and >
+    /// 0, ...).
+    void validate() const;
+};
+
+bool operator==(const CameraInfo& a, const CameraInfo& b);
+
+}  // namespace planemap

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What odometry hands to the graph, and the graph to the map.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/pose.hpp"
+#include "core/region.hpp"
+
+namespace planemap {
+
+enum class TrackingStatus : std::int8_t {
+    kLost = 0,     ///< no pose
+    kTracked = 1,  ///< a pose, all directions determined
+    kDegenerate =
+        2,  ///< a pose, some directions determined by the prediction only; the covariance says which
+};
+
+/// Where the camera is after one frame. The odom frame is smooth: no loop closure moves it.
+struct OdometryEstimate {
+    std::int64_t utime = 0;  ///< of the frame (its depth image), microseconds
+    std::int64_t pose_utime =
+        0;  ///< moment the pose is of (the colour image's time if colour was used), microseconds
+    TrackingStatus status = TrackingStatus::kLost;  ///< when lost, the poses mean nothing
+    Pose odom_from_camera = Pose::Identity();
+    int keyframe_id = -1;  ///< keyframe this frame was tracked against
+    Pose keyframe_from_camera = Pose::Identity();
+    Matrix6d covariance = Matrix6d::Zero();  ///< of keyframe_from_camera: translation, rotation; camera frame
+    int features = 0;                        ///< features or terms tried
+    int inliers = 0;
+    double residual_px = 0;  ///< RMS reprojection error of the inliers
+};
+
+/// A 256-bit binary descriptor; compared by Hamming distance.
+using Descriptor = std::array<std::uint8_t, 32>;
+
+/// One 2D feature with its 3D point. Planar ones lie exactly on their region (paper section 2.2).
+struct Feature {
+    Eigen::Vector2f pixel = Eigen::Vector2f::Zero();  ///< u, v in the colour image
+    Eigen::Vector3f point = Eigen::Vector3f::Zero();  ///< camera frame, metres
+    int region = -1;                                  ///< index into the keyframe's regions, -1: on no plane
+    Descriptor descriptor{};
+};
+
+/// A frame worth keeping.
+struct Keyframe {
+    std::int64_t utime = 0;       ///< of the frame (its depth image), microseconds
+    std::int64_t pose_utime = 0;  ///< moment the pose is of, microseconds
+    int id = -1;                  ///< 0, 1, 2, ... in order of time
+    Pose odom_from_camera = Pose::Identity();
+    int previous_id = -1;  ///< keyframe the edge leads from; -1: none (first one, or after a loss)
+    Pose previous_from_camera = Pose::Identity();  ///< the edge
+    Matrix6d covariance = Matrix6d::Zero();        ///< of the edge: translation, rotation; camera frame
+    std::vector<Feature> features;
+    std::vector<PlanarRegion> regions;  ///< camera frame
+};
+
+/// Pose of one keyframe after graph optimisation.
+struct KeyframePose {
+    int id = -1;
+    std::int64_t utime = 0;  ///< Keyframe::utime
+    Pose world_from_camera = Pose::Identity();
+};
+
+/// All keyframe poses after graph optimisation.
+struct KeyframeTrajectory {
+    std::int64_t utime = 0;                   ///< of the newest keyframe
+    int revision = 0;                         ///< grows when earlier keyframes moved
+    int loop_closures = 0;                    ///< accepted so far
+    Pose world_from_odom = Pose::Identity();  ///< correction for frames after the newest keyframe
+    std::vector<KeyframePose> keyframes;      ///< ascending id
+};
+
+}  // namespace planemap

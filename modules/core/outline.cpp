@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/outline.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace planemap {
+
+namespace {
+
+double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+    return a.x() * b.y() - a.y() * b.x();
+}
+
+double distance_to_segment(const Eigen::Vector2d& p, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+    const Eigen::Vector2d ab = b - a;
+    const double length2 = ab.squaredNorm();
+    const double s = length2 > 0 ? std::clamp((p - a).dot(ab) / length2, 0.0, 1.0) : 0.0;
+    return (p - (a + s * ab)).norm();
+}
+
+/// Marks the vertices to keep between first and last (indices into a ring, last may wrap past its end).
+void douglas_peucker(const Ring& ring, std::size_t first, std::size_t last, double tolerance,
+                     std::vector<bool>& keep) {
+    std::vector<std::pair<std::size_t, std::size_t>> pending{{first, last}};
+    while (!pending.empty()) {
+        const auto [from, to] = pending.back();
+        pending.pop_back();
+        double worst = tolerance;
+        std::size_t worst_at = from;
+        for (std::size_t i = from + 1; i < to; ++i) {
+            const double d =
+                distance_to_segment(ring[i % ring.size()], ring[from % ring.size()], ring[to % ring.size()]);
+            if (d > worst) {
+                worst = d;
+                worst_at = i;
+            }
+        }
+        if (worst_at == from) continue;
+        keep[worst_at % ring.size()] = true;
+        pending.emplace_back(from, worst_at);
+        pending.emplace_back(worst_at, to);
+    }
+}
+
+Ring simplified(const Ring& ring, double tolerance) {
+    if (ring.size() < 3) return {};
+    // Two anchors that are certainly kept: the lexicographically smallest vertex and the one farthest from
+    // it.
+    std::size_t anchor = 0, far = 0;
+    for (std::size_t i = 1; i < ring.size(); ++i) {
+        if (std::pair(ring[i].x(), ring[i].y()) < std::pair(ring[anchor].x(), ring[anchor].y())) anchor = i;
+    }
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+        if ((ring[i] - ring[anchor]).squaredNorm() > (ring[far] - ring[anchor]).squaredNorm()) far = i;
+    }
+    if (far == anchor) return {};
+    const std::size_t end = far > anchor ? far : far + ring.size();
+    std::vector<bool> keep(ring.size(), false);
+    keep[anchor] = keep[far] = true;
+    douglas_peucker(ring, anchor, end, tolerance, keep);
+    douglas_peucker(ring, end, anchor + ring.size(), tolerance, keep);
+    Ring result;
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+        if (keep[i]) result.push_back(ring[i]);
+    }
+    if (result.size() < 3 || signed_area(result) == 0) return {};
+    return result;
+}
+
+}  // namespace
+
+std::size_t Outline::vertex_count() const {
+    std::size_t count = 0;
+    for (const Ring& ring : rings) count += ring.size();
+    return count;
+}
+
+double signed_area(const Ring& ring) {
+    double twice = 0;
+    for (std::size_t i = 0; i < ring.size(); ++i) twice += cross(ring[i], ring[(i + 1) % ring.size()]);
+    return 0.5 * twice;
+}
+
+double area(const Outline& outline) {
+    // Rings do not cross, so a ring counts as solid or hole by how many others hold it.
+    double total = 0;
+    for (std::size_t i = 0; i < outline.rings.size(); ++i) {
+        const Ring& ring = outline.rings[i];
+        if (ring.size() < 3) continue;
+        std::size_t depth = 0;
+        // The midpoint of an edge, so that rings that share a vertex do not confuse the test.
+        const Eigen::Vector2d probe = 0.5 * (ring[0] + ring[1]);
+        for (std::size_t j = 0; j < outline.rings.size(); ++j) {
+            if (j != i && contains(Outline{{outline.rings[j]}}, probe)) ++depth;
+        }
+        total += (depth % 2 == 0 ? 1.0 : -1.0) * std::abs(signed_area(ring));
+    }
+    return total;
+}
+
+bool contains(const Outline& outline, const Eigen::Vector2d& p) {
+    bool inside = false;
+    for (const Ring& ring : outline.rings) {
+        for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
+            const Eigen::Vector2d &a = ring[i], &b = ring[j];
+            if ((a.y() > p.y()) == (b.y() > p.y())) continue;
+            if (p.x() < (b.x() - a.x()) * (p.y() - a.y()) / (b.y() - a.y()) + a.x()) inside = !inside;
+        }
+    }
+    return inside;
+}
+
+double distance(const Outline& outline, const Eigen::Vector2d& p) {
+    if (contains(outline, p)) return 0;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Ring& ring : outline.rings) {
+        for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
+            nearest = std::min(nearest, distance_to_segment(p, ring[j], ring[i]));
+        }
+    }
+    return nearest;
+}
+
+Outline simplified(const Outline& outline, double tolerance) {
+    Outline result;
+    for (const Ring& ring : outline.rings) {
+        Ring simple = simplified(ring, tolerance);
+        if (!simple.empty()) result.rings.push_back(std::move(simple));
+    }
+    return result;
+}
+
+Outline trace(const Mask& mask) {
+    // Each set cell contributes directed edges counter-clockwise around it where its neighbour is not set. An
+    // edge is named by its start corner and direction (0: +x, 1: +y, 2: -x, 3: -y); following them gives the
+    // rings.
+    const int corners_wide = mask.width + 1;
+    const auto corner = [&](int x, int y) {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(corners_wide) +
+               static_cast<std::size_t>(x);
+    };
+    std::vector<std::uint8_t> edges(corner(0, mask.height + 1), 0);
+    for (int y = 0; y < mask.height; ++y) {
+        for (int x = 0; x < mask.width; ++x) {
+            if (!mask.at(x, y)) continue;
+            if (!mask.at(x, y - 1)) edges[corner(x, y)] |= 1;
+            if (!mask.at(x + 1, y)) edges[corner(x + 1, y)] |= 2;
+            if (!mask.at(x, y + 1)) edges[corner(x + 1, y + 1)] |= 4;
+            if (!mask.at(x - 1, y)) edges[corner(x, y + 1)] |= 8;
+        }
+    }
+    constexpr std::array<int, 4> dx{1, 0, -1, 0}, dy{0, 1, 0, -1};
+    Outline outline;
+    for (int y = 0; y <= mask.height; ++y) {
+        for (int x = 0; x <= mask.width; ++x) {
+            while (edges[corner(x, y)] != 0) {
+                Ring ring;
+                int cx = x, cy = y, previous = -1;
+                int direction = 0;
+                while ((edges[corner(cx, cy)] >> direction & 1) == 0) ++direction;
+                const int first = direction;
+                do {
+                    edges[corner(cx, cy)] =
+                        static_cast<std::uint8_t>(edges[corner(cx, cy)] & ~(1 << direction));
+                    if (direction != previous) ring.emplace_back(cx, cy);
+                    previous = direction;
+                    cx += dx[static_cast<std::size_t>(direction)];
+                    cy += dy[static_cast<std::size_t>(direction)];
+                    // Turn left where two rings meet at a corner: cells that touch there stay apart.
+                    const std::uint8_t here = edges[corner(cx, cy)];
+                    const int left = (direction + 1) % 4, right = (direction + 3) % 4;
+                    if (here >> left & 1) {
+                        direction = left;
+                    } else if (here >> direction & 1) {
+                        // straight on
+                    } else if (here >> right & 1) {
+                        direction = right;
+                    } else {
+                        break;
+                    }
+                } while (true);
+                if (previous == first && ring.size() > 1) ring.erase(ring.begin());
+                outline.rings.push_back(std::move(ring));
+            }
+        }
+    }
+    return outline;
+}
+
+void fill(const Outline& outline, Mask& mask) {
+    std::vector<double> crossings;
+    for (int y = 0; y < mask.height; ++y) {
+        const double centre = y + 0.5;
+        crossings.clear();
+        for (const Ring& ring : outline.rings) {
+            for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
+                const Eigen::Vector2d &a = ring[i], &b = ring[j];
+                if ((a.y() > centre) == (b.y() > centre)) continue;
+                crossings.push_back((b.x() - a.x()) * (centre - a.y()) / (b.y() - a.y()) + a.x());
+            }
+        }
+        std::sort(crossings.begin(), crossings.end());
+        for (std::size_t k = 0; k + 1 < crossings.size(); k += 2) {
+            const double low = std::clamp(crossings[k] - 0.5, -1.0, static_cast<double>(mask.width));
+            const double high = std::clamp(crossings[k + 1] - 0.5, -1.0, static_cast<double>(mask.width));
+            for (int x = std::max(0, static_cast<int>(std::ceil(low))); x < mask.width && x < high; ++x)
+                mask.set(x, y);
+        }
+    }
+}
+
+Ring convex_hull(std::span<const Eigen::Vector2d> points) {
+    std::vector<Eigen::Vector2d> sorted(points.begin(), points.end());
+    const auto less = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+        return std::pair(a.x(), a.y()) < std::pair(b.x(), b.y());
+    };
+    std::sort(sorted.begin(), sorted.end(), less);
+    sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
+    if (sorted.size() < 3) return {};
+    Ring hull;  // Andrew's monotone chain: lower hull, then upper
+    const auto extend = [&](const Eigen::Vector2d& p, std::size_t keep) {
+        while (hull.size() > keep && cross(hull.back() - hull[hull.size() - 2], p - hull.back()) <= 0)
+            hull.pop_back();
+        hull.push_back(p);
+    };
+    for (const auto& p : sorted) extend(p, 1);
+    const std::size_t lower = hull.size();
+    for (std::size_t i = sorted.size() - 1; i-- > 0;) extend(sorted[i], lower);
+    hull.pop_back();
+    if (hull.size() < 3) return {};
+    return hull;
+}
+
+}  // namespace planemap

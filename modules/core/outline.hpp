@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace planemap {
+
+/// A closed polygon; the last vertex is joined to the first.
+using Ring = std::vector<Eigen::Vector2d>;
+
+/// The shape of a planar region: closed rings under the even-odd rule, so an inner ring is a hole and
+/// separate parts are separate rings. Rings neither cross themselves nor each other. Coordinates are metres
+/// in the x and y of the owner's box frame (see Box).
+struct Outline {
+    std::vector<Ring> rings;
+
+    bool empty() const { return rings.empty(); }
+    std::size_t vertex_count() const;
+};
+
+/// Signed area by the shoelace formula: positive for counter-clockwise.
+double signed_area(const Ring& ring);
+
+/// Area under the even-odd rule; holes count as nothing. Square metres for an outline in metres.
+double area(const Outline& outline);
+
+/// True when the point is inside under the even-odd rule.
+bool contains(const Outline& outline, const Eigen::Vector2d& p);
+
+/// Distance from a point to the outline's area: 0 inside; infinity for an empty outline.
+double distance(const Outline& outline, const Eigen::Vector2d& p);
+
+/// Douglas-Peucker on each ring: no vertex of the input is further than `tolerance` from the result. Rings
+/// that collapse to fewer than three vertices are dropped.
+Outline simplified(const Outline& outline, double tolerance);
+
+/// A binary image, row-major, one byte a cell; non-zero is set.
+struct Mask {
+    int width = 0, height = 0;
+    std::vector<std::uint8_t> cells;
+
+    Mask() = default;
+    Mask(int w, int h)
+        : width(w), height(h), cells(static_cast<std::size_t>(w) * static_cast<std::size_t>(h), 0) {}
+    std::size_t index(int x, int y) const {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+    }
+    bool at(int x, int y) const {
+        return x >= 0 && y >= 0 && x < width && y < height && cells[index(x, y)] != 0;
+    }
+    void set(int x, int y) { cells[index(x, y)] = 1; }
+};
+
+/// The boundary of the set cells as rings in cell-corner coordinates: cell (x, y) is the square [x, x+1] x
+/// [y, y+1]. Outer rings are counter-clockwise (in a frame with x right and y up), holes clockwise; cells
+/// that touch at a corner only are separate parts. Collinear vertices are left out.
+Outline trace(const Mask& mask);
+
+/// Sets every cell of the mask whose centre lies inside the outline (given in cell-corner coordinates).
+/// Parts outside the mask are clipped.
+void fill(const Outline& outline, Mask& mask);
+
+/// The convex hull, counter-clockwise, without collinear vertices; empty for fewer than three distinct
+/// points.
+Ring convex_hull(std::span<const Eigen::Vector2d> points);
+
+}  // namespace planemap

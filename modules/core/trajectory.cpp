@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/trajectory.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <sstream>
+#include <stdexcept>
+
+#include "core/files.hpp"
+
+namespace planemap {
+
+Trajectory read_trajectory(const std::filesystem::path& file) {
+    std::istringstream in(read_file(file));
+    Trajectory trajectory;
+    std::string line;
+    for (int number = 1; std::getline(in, line); ++number) {
+        const auto start = line.find_first_not_of(" \t\r");
+        if (start == std::string::npos || line[start] == '#') continue;
+        std::replace(line.begin(), line.end(), ',', ' ');
+        std::istringstream fields(line);
+        double v[8];
+        for (double& value : v) {
+            std::string text;
+            fields >> text;
+            char* end = nullptr;
+            value = std::strtod(text.c_str(), &end);
+            if (text.empty() || *end != '\0' || !std::isfinite(value)) {
+                throw std::runtime_error(file.string() + ":" + std::to_string(number) +
+                                         ": expected eight finite numbers: timestamp tx ty tz qx qy qz qw");
+            }
+        }
+        const Eigen::Quaterniond q(v[7], v[4], v[5], v[6]);
+        if (q.norm() < 1e-3) {
+            throw std::runtime_error(file.string() + ":" + std::to_string(number) +
+                                     ": the quaternion is zero");
+        }
+        trajectory.push_back({std::llround(v[0] * 1e6), make_pose({v[1], v[2], v[3]}, q)});
+    }
+    std::stable_sort(trajectory.begin(), trajectory.end(),
+                     [](const auto& a, const auto& b) { return a.utime < b.utime; });
+    return trajectory;
+}
+
+void write_trajectory(const std::filesystem::path& file, const Trajectory& trajectory) {
+    std::string text = "# timestamp tx ty tz qx qy qz qw (seconds, world_from_camera, metres)\n";
+    for (const StampedPose& pose : trajectory) {
+        const Eigen::Vector3d t = pose.world_from_camera.translation();
+        Eigen::Quaterniond q(pose.world_from_camera.linear());
+        q.normalize();
+        if (q.w() < 0) q.coeffs() = -q.coeffs();
+        char line[256];
+        std::snprintf(line, sizeof(line), "%lld.%06lld %.7f %.7f %.7f %.7f %.7f %.7f %.7f\n",
+                      static_cast<long long>(pose.utime / 1000000),
+                      static_cast<long long>(pose.utime % 1000000), t.x(), t.y(), t.z(), q.x(), q.y(), q.z(),
+                      q.w());
+        text += line;
+    }
+    write_file(file, text);
+}
+
+}  // namespace planemap
