@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "graph/graph_shell.hpp"
+
+#include "messages/channels.hpp"
+#include "messages/convert.hpp"
+#include "messages/decode.hpp"
+
+namespace planemap {
+
+GraphShell::GraphShell(Bus& bus, const GraphOptions& options) : bus_(bus), graph_(options) {
+    // Keyframes are few and each counts: a long queue.
+    bus_.subscribe(channels::kKeyframe, status_.guard([this](const RawMessage& m) { on_keyframe(m); }), 256);
+}
+
+void GraphShell::on_keyframe(const RawMessage& message) {
+    const keyframe_t received = decode<keyframe_t>(message.bytes);
+    const Keyframe keyframe = from_message(received);
+    status_.received(static_cast<std::uint32_t>(received.seq));
+    try {
+        const ModuleStatus::Work work(status_);
+        graph_.add(keyframe);
+    } catch (const std::invalid_argument& error) {
+        throw MessageError(error.what());
+    }
+    const KeyframeTrajectory& trajectory = graph_.trajectory();
+    bus_.publish(channels::kTrajectory, to_message(trajectory, seq_++));
+    status_.published();
+    status_.set_text(std::to_string(trajectory.keyframes.size()) + " keyframes, " +
+                     std::to_string(trajectory.loop_closures) + " loop closures");
+}
+
+}  // namespace planemap

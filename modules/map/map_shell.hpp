@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "map/map.hpp"
+#include "messages/process.hpp"
+
+namespace planemap {
+
+struct MapShellOptions {
+    MapOptions map;
+    /// Folder that plane_map.lcmlog is written to (beside and renamed), every few seconds and at a clean
+    /// stop; empty: none.
+    std::filesystem::path output;
+};
+
+/// PLANEMAP_KEYFRAME and PLANEMAP_TRAJECTORY to PLANEMAP_MAP.
+class MapShell : public Shell {
+  public:
+    MapShell(Bus& bus, const MapShellOptions& options);
+
+    ModuleStatus& status() override { return status_; }
+    int poll() override;
+    void finish() override;
+
+    const PlaneMapper& mapper() const { return mapper_; }
+
+  private:
+    void on_keyframe(const RawMessage& message);
+    void on_trajectory(const RawMessage& message);
+    void write();
+
+    Bus& bus_;
+    std::filesystem::path output_;
+    PlaneMapper mapper_;
+    ModuleStatus status_{"map"};
+    std::int32_t seq_ = 0;
+    std::int64_t last_write_us_ = 0;
+    bool unwritten_ = false;
+};
+
+/// The map as one event of an LCM log, on PLANEMAP_MAP: what plane_map.lcmlog holds, for lcm-logplayer.
+std::string plane_map_log(const PlaneMap& map);
+
+/// Flags for the options, each named --<prefix>NAME.
+void add_flags(CLI::App& app, MapOptions& options, const std::string& prefix = "");
+
+}  // namespace planemap

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The channels of the bus, upper case as the LCM world writes them.
+#pragma once
+
+namespace planemap::channels {
+
+inline constexpr const char* kFrame = "OPENNI_FRAME";                 ///< bot_core.images_t
+inline constexpr const char* kCameraInfo = "PLANEMAP_CAMERA_INFO";    ///< planemap.camera_info_t
+inline constexpr const char* kRegions = "PLANEMAP_REGIONS";           ///< planemap.planar_regions_t
+inline constexpr const char* kOdometry = "PLANEMAP_ODOMETRY";         ///< planemap.odometry_t
+inline constexpr const char* kPose = "POSE_BODY";                     ///< bot_core.pose_t
+inline constexpr const char* kKeyframe = "PLANEMAP_KEYFRAME";         ///< planemap.keyframe_t
+inline constexpr const char* kTrajectory = "PLANEMAP_TRAJECTORY";     ///< planemap.trajectory_t
+inline constexpr const char* kMap = "PLANEMAP_MAP";                   ///< planemap.plane_map_t
+inline constexpr const char* kOctomapSize = "PLANEMAP_OCTOMAP_SIZE";  ///< planemap.map_size_t
+inline constexpr const char* kStatusPrefix =
+    "PLANEMAP_STATUS_";  ///< planemap.module_status_t, module in upper case
+
+}  // namespace planemap::channels

@@ -1,0 +1,548 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "messages/convert.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "messages/image_codec.hpp"
+
+namespace planemap {
+
+namespace {
+
+[[noreturn]] void fail(const std::string& field, const std::string& reason) {
+    throw MessageError(field + " " + reason);
+}
+
+void require(bool ok, const char* field, const char* reason) {
+    if (!ok) fail(field, reason);
+}
+
+std::int32_t count32(std::size_t count) {
+    if (count > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
+        throw std::length_error("message too long");
+    return static_cast<std::int32_t>(count);
+}
+
+transform_t to_message(const Pose& pose) {
+    transform_t message;
+    const Eigen::Vector3d t = pose.translation();
+    Eigen::Quaterniond q(pose.linear());
+    q.normalize();
+    if (q.w() < 0) q.coeffs() = -q.coeffs();
+    std::copy(t.data(), t.data() + 3, message.translation);
+    message.rotation[0] = q.w();
+    message.rotation[1] = q.x();
+    message.rotation[2] = q.y();
+    message.rotation[3] = q.z();
+    return message;
+}
+
+Pose from_message(const transform_t& message, const char* field) {
+    const Eigen::Vector3d t(message.translation);
+    const Eigen::Quaterniond q(message.rotation[0], message.rotation[1], message.rotation[2],
+                               message.rotation[3]);
+    require(t.allFinite(), field, "has a translation that is not finite");
+    require(q.coeffs().allFinite() && std::abs(q.norm() - 1.0) < 1e-3, field,
+            "has a rotation that is not a unit quaternion");
+    return make_pose(t, q);
+}
+
+camera_intrinsics_t to_message(const PinholeCamera& camera) {
+    camera_intrinsics_t message;
+    message.width = camera.width;
+    message.height = camera.height;
+    message.fx = camera.fx;
+    message.fy = camera.fy;
+    message.cx = camera.cx;
+    message.cy = camera.cy;
+    return message;
+}
+
+PinholeCamera from_message(const camera_intrinsics_t& m) {
+    return {m.width, m.height, m.fx, m.fy, m.cx, m.cy};
+}
+
+planar_region_t to_message(const PlanarRegion& region) {
+    planar_region_t message;
+    for (int i = 0; i < 3; ++i) {
+        message.normal[i] = region.plane.normal[i];
+        message.sum[i] = region.moments.sum[i];
+        message.half_extents[i] = static_cast<float>(region.box.half_extents[i]);
+    }
+    message.d = region.plane.d;
+    message.count = region.moments.count;
+    const Eigen::Matrix3d& s = region.moments.scatter;
+    const double scatter[6] = {s(0, 0), s(0, 1), s(0, 2), s(1, 1), s(1, 2), s(2, 2)};
+    std::copy(scatter, scatter + 6, message.scatter);
+    message.frame_from_box = to_message(region.box.frame_from_box);
+    message.rms = static_cast<float>(region.rms);
+    message.n_rings = count32(region.outline.rings.size());
+    for (const Ring& ring : region.outline.rings) {
+        message.ring_sizes.push_back(count32(ring.size()));
+        for (const auto& v : ring)
+            message.vertices.push_back({static_cast<float>(v.x()), static_cast<float>(v.y())});
+    }
+    message.n_vertices = count32(message.vertices.size());
+    return message;
+}
+
+/// Splits vertices into rings; `vertex(i)` gives the i-th.
+template <typename Sizes, typename Vertex>
+Outline rings_from(const Sizes& sizes, std::size_t vertices, const Vertex& vertex) {
+    Outline outline;
+    std::size_t at = 0;
+    for (const auto size : sizes) {
+        require(size >= 3 && static_cast<std::size_t>(size) <= vertices - at, "ring_sizes",
+                "does not fit n_vertices");
+        Ring ring;
+        for (int i = 0; i < size; ++i) ring.push_back(vertex(at++));
+        outline.rings.push_back(std::move(ring));
+    }
+    require(at == vertices, "ring_sizes", "does not fit n_vertices");
+    return outline;
+}
+
+PlanarRegion from_message(const planar_region_t& message) {
+    PlanarRegion region;
+    region.plane.normal = Eigen::Vector3d(message.normal);
+    region.plane.d = message.d;
+    region.moments.count = message.count;
+    region.moments.sum = Eigen::Vector3d(message.sum);
+    const double* s = message.scatter;
+    region.moments.scatter << s[0], s[1], s[2], s[1], s[3], s[4], s[2], s[4], s[5];
+    region.box.frame_from_box = from_message(message.frame_from_box, "region.frame_from_box");
+    region.box.half_extents = Eigen::Vector3f(message.half_extents).cast<double>();
+    region.rms = message.rms;
+    region.outline = rings_from(message.ring_sizes, message.vertices.size(), [&](std::size_t i) {
+        return Eigen::Vector2d(message.vertices[i][0], message.vertices[i][1]);
+    });
+    require(is_valid(region), "region",
+            "has a plane, moments, box or outline that is not finite or not consistent");
+    return region;
+}
+
+std::vector<PlanarRegion> from_messages(const std::vector<planar_region_t>& messages) {
+    std::vector<PlanarRegion> regions;
+    regions.reserve(messages.size());
+    for (const auto& message : messages) regions.push_back(from_message(message));
+    return regions;
+}
+
+std::vector<planar_region_t> to_messages(const std::vector<PlanarRegion>& regions) {
+    std::vector<planar_region_t> messages;
+    messages.reserve(regions.size());
+    for (const auto& region : regions) messages.push_back(to_message(region));
+    return messages;
+}
+
+void copy_covariance(const Matrix6d& covariance, double* out) {
+    for (int r = 0; r < 6; ++r) {
+        for (int c = 0; c < 6; ++c) *out++ = covariance(r, c);
+    }
+}
+
+Matrix6d covariance_from(const double* in, const char* field) {
+    Matrix6d covariance;
+    for (int r = 0; r < 6; ++r) {
+        for (int c = 0; c < 6; ++c) covariance(r, c) = *in++;
+    }
+    require(covariance.allFinite(), field, "is not finite");
+    return covariance;
+}
+
+}  // namespace
+
+camera_info_t to_message(const CameraInfo& camera, std::int64_t utime, std::int32_t seq) {
+    camera_info_t message;
+    message.utime = utime;
+    message.seq = seq;
+    message.serial = camera.serial;
+    message.depth = to_message(camera.depth);
+    message.color = to_message(camera.color);
+    message.registered = camera.registered ? 1 : 0;
+    message.color_from_depth = to_message(camera.color_from_depth);
+    message.depth_units_per_metre = camera.depth_units_per_metre;
+    message.depth_min_m = camera.depth_min_m;
+    message.depth_max_m = camera.depth_max_m;
+    message.noise_base_m = camera.noise.base_m;
+    message.noise_quadratic_per_m = camera.noise.quadratic_per_m;
+    message.noise_offset_m = camera.noise.offset_m;
+    return message;
+}
+
+CameraInfo from_message(const camera_info_t& message) {
+    CameraInfo camera;
+    camera.serial = message.serial;
+    camera.depth = from_message(message.depth);
+    camera.color = from_message(message.color);
+    camera.registered = message.registered != 0;
+    camera.color_from_depth = from_message(message.color_from_depth, "camera_info.color_from_depth");
+    camera.depth_units_per_metre = message.depth_units_per_metre;
+    camera.depth_min_m = message.depth_min_m;
+    camera.depth_max_m = message.depth_max_m;
+    camera.noise = {message.noise_base_m, message.noise_quadratic_per_m, message.noise_offset_m};
+    try {
+        camera.validate();
+    } catch (const std::invalid_argument& error) {
+        throw MessageError(error.what());
+    }
+    return camera;
+}
+
+planar_regions_t to_message(const FrameRegions& regions, std::int32_t seq) {
+    planar_regions_t message;
+    message.utime = regions.utime;
+    message.seq = seq;
+    message.regions = to_messages(regions.regions);
+    message.n_regions = count32(message.regions.size());
+    return message;
+}
+
+FrameRegions from_message(const planar_regions_t& message) {
+    return {message.utime, from_messages(message.regions)};
+}
+
+odometry_t to_message(const OdometryEstimate& estimate, std::int32_t seq) {
+    odometry_t message;
+    message.utime = estimate.utime;
+    message.pose_utime = estimate.pose_utime;
+    message.seq = seq;
+    message.status = static_cast<std::int8_t>(estimate.status);
+    message.odom_from_camera = to_message(estimate.odom_from_camera);
+    message.keyframe_id = estimate.keyframe_id;
+    message.keyframe_from_camera = to_message(estimate.keyframe_from_camera);
+    copy_covariance(estimate.covariance, message.covariance);
+    message.n_features = estimate.features;
+    message.n_inliers = estimate.inliers;
+    message.residual_px = static_cast<float>(estimate.residual_px);
+    return message;
+}
+
+OdometryEstimate from_message(const odometry_t& message) {
+    OdometryEstimate estimate;
+    estimate.utime = message.utime;
+    estimate.pose_utime = message.pose_utime;
+    require(message.status >= 0 && message.status <= 2, "odometry.status", "is unknown");
+    estimate.status = static_cast<TrackingStatus>(message.status);
+    estimate.odom_from_camera = from_message(message.odom_from_camera, "odometry.odom_from_camera");
+    estimate.keyframe_id = message.keyframe_id;
+    estimate.keyframe_from_camera =
+        from_message(message.keyframe_from_camera, "odometry.keyframe_from_camera");
+    estimate.covariance = covariance_from(message.covariance, "odometry.covariance");
+    estimate.features = message.n_features;
+    estimate.inliers = message.n_inliers;
+    estimate.residual_px = message.residual_px;
+    return estimate;
+}
+
+bot_core::pose_t to_pose_message(const OdometryEstimate& estimate) {
+    bot_core::pose_t message{};
+    message.utime = estimate.pose_utime;
+    const transform_t pose = to_message(estimate.odom_from_camera);
+    std::copy(pose.translation, pose.translation + 3, message.pos);
+    std::copy(pose.rotation, pose.rotation + 4, message.orientation);
+    return message;
+}
+
+keyframe_t to_message(const Keyframe& keyframe, std::int32_t seq) {
+    keyframe_t message;
+    message.utime = keyframe.utime;
+    message.pose_utime = keyframe.pose_utime;
+    message.seq = seq;
+    message.id = keyframe.id;
+    message.odom_from_camera = to_message(keyframe.odom_from_camera);
+    message.previous_id = keyframe.previous_id;
+    message.previous_from_camera = to_message(keyframe.previous_from_camera);
+    copy_covariance(keyframe.covariance, message.covariance);
+    message.n_features = count32(keyframe.features.size());
+    for (const Feature& feature : keyframe.features) {
+        message.pixels.push_back({feature.pixel.x(), feature.pixel.y()});
+        message.points.push_back({feature.point.x(), feature.point.y(), feature.point.z()});
+        message.regions_of.push_back(static_cast<std::int16_t>(feature.region));
+        message.descriptors.insert(message.descriptors.end(), feature.descriptor.begin(),
+                                   feature.descriptor.end());
+    }
+    message.n_descriptor_bytes = count32(message.descriptors.size());
+    message.regions = to_messages(keyframe.regions);
+    message.n_regions = count32(message.regions.size());
+    return message;
+}
+
+Keyframe from_message(const keyframe_t& message) {
+    Keyframe keyframe;
+    keyframe.utime = message.utime;
+    keyframe.pose_utime = message.pose_utime;
+    keyframe.id = message.id;
+    require(message.id >= 0, "keyframe.id", "is negative");
+    require(message.previous_id >= -1 && message.previous_id < message.id, "keyframe.previous_id",
+            "is not an earlier keyframe");
+    keyframe.previous_id = message.previous_id;
+    keyframe.odom_from_camera = from_message(message.odom_from_camera, "keyframe.odom_from_camera");
+    keyframe.previous_from_camera =
+        from_message(message.previous_from_camera, "keyframe.previous_from_camera");
+    keyframe.covariance = covariance_from(message.covariance, "keyframe.covariance");
+    keyframe.regions = from_messages(message.regions);
+    constexpr std::size_t kBytes = std::tuple_size_v<Descriptor>;
+    const auto features = static_cast<std::size_t>(message.n_features);
+    require(message.descriptors.size() == features * kBytes, "keyframe.n_descriptor_bytes",
+            "is not 32 n_features");
+    keyframe.features.resize(features);
+    for (std::size_t i = 0; i < features; ++i) {
+        Feature& feature = keyframe.features[i];
+        feature.pixel = {message.pixels[i][0], message.pixels[i][1]};
+        feature.point = {message.points[i][0], message.points[i][1], message.points[i][2]};
+        feature.region = message.regions_of[i];
+        require(feature.pixel.allFinite() && feature.point.allFinite(), "keyframe.points", "are not finite");
+        require(feature.region >= -1 && feature.region < message.n_regions, "keyframe.regions_of",
+                "is out of range");
+        std::copy_n(message.descriptors.begin() + static_cast<std::ptrdiff_t>(i * kBytes), kBytes,
+                    feature.descriptor.begin());
+    }
+    return keyframe;
+}
+
+trajectory_t to_message(const KeyframeTrajectory& trajectory, std::int32_t seq) {
+    trajectory_t message;
+    message.utime = trajectory.utime;
+    message.seq = seq;
+    message.revision = trajectory.revision;
+    message.n_loop_closures = trajectory.loop_closures;
+    message.world_from_odom = to_message(trajectory.world_from_odom);
+    message.n_keyframes = count32(trajectory.keyframes.size());
+    for (const KeyframePose& keyframe : trajectory.keyframes) {
+        message.ids.push_back(keyframe.id);
+        message.utimes.push_back(keyframe.utime);
+        message.world_from_camera.push_back(to_message(keyframe.world_from_camera));
+    }
+    return message;
+}
+
+KeyframeTrajectory from_message(const trajectory_t& message) {
+    KeyframeTrajectory trajectory;
+    trajectory.utime = message.utime;
+    trajectory.revision = message.revision;
+    trajectory.loop_closures = message.n_loop_closures;
+    trajectory.world_from_odom = from_message(message.world_from_odom, "trajectory.world_from_odom");
+    const auto count = static_cast<std::size_t>(message.n_keyframes);
+    for (std::size_t i = 0; i < count; ++i) {
+        require(message.ids[i] >= 0 && (i == 0 || message.ids[i] > message.ids[i - 1]), "trajectory.ids",
+                "do not ascend");
+        trajectory.keyframes.push_back(
+            {message.ids[i], message.utimes[i],
+             from_message(message.world_from_camera[i], "trajectory.world_from_camera")});
+    }
+    return trajectory;
+}
+
+namespace {
+
+constexpr double kVertexUnit = 0.001;
+constexpr double kVertexSteps = 32767;
+
+/// The direction that map_plane_t.angle counts from: the first of world x, y, z that is not nearly along the
+/// normal.
+Eigen::Matrix3d reference_axes(const Eigen::Vector3d& normal) {
+    const Eigen::Vector3d reference =
+        std::abs(normal.x()) < 0.9 ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitY();
+    return plane_axes(normal, reference);
+}
+
+map_plane_t to_message(const MapPlane& plane) {
+    const PlanarRegion& region = plane.region;
+    map_plane_t message;
+    message.id = plane.id;
+    message.label = static_cast<std::int8_t>(plane.label);
+    // The centre is sent, so d follows from the rounded normal: the plane passes through the centre whatever
+    // is rounded.
+    const Eigen::Vector3f normal = region.plane.normal.cast<float>();
+    const Eigen::Vector3d center = region.plane.project(region.box.frame_from_box.translation());
+    for (int i = 0; i < 3; ++i) {
+        message.normal[i] = normal[i];
+        message.center[i] = static_cast<float>(center[i]);
+    }
+    message.d = static_cast<float>(-normal.cast<double>().dot(center));
+    const Eigen::Vector3d x =
+        reference_axes(region.plane.normal).transpose() * region.box.frame_from_box.linear().col(0);
+    message.angle = static_cast<float>(std::atan2(x.y(), x.x()));
+    message.half_extents[0] = static_cast<float>(region.box.half_extents.x());
+    message.half_extents[1] = static_cast<float>(region.box.half_extents.y());
+    message.rms = static_cast<float>(region.rms);
+    message.inliers = static_cast<float>(region.moments.count);
+    message.area = static_cast<float>(plane.area);
+    message.n_keyframes = static_cast<std::int16_t>(std::min<std::size_t>(plane.keyframes.size(), 32767));
+    double largest = 0;
+    for (const Ring& ring : region.outline.rings) {
+        for (const auto& v : ring) largest = std::max(largest, v.cwiseAbs().maxCoeff());
+    }
+    message.unit = static_cast<float>(std::max(kVertexUnit, largest / kVertexSteps));
+    const auto steps = [&](double value) {
+        return static_cast<std::int16_t>(
+            std::clamp(std::round(value / message.unit), -kVertexSteps, kVertexSteps));
+    };
+    for (const Ring& ring : region.outline.rings) {
+        if (ring.size() > 32767)
+            throw std::length_error("plane " + std::to_string(plane.id) + ": outline ring too long");
+        message.ring_sizes.push_back(static_cast<std::int16_t>(ring.size()));
+        for (const auto& v : ring) message.vertices.push_back({steps(v.x()), steps(v.y())});
+    }
+    if (message.ring_sizes.size() > 32767)
+        throw std::length_error("plane " + std::to_string(plane.id) + ": too many rings");
+    message.n_rings = static_cast<std::int16_t>(message.ring_sizes.size());
+    message.n_vertices = count32(message.vertices.size());
+    return message;
+}
+
+MapPlane from_message(const map_plane_t& message) {
+    MapPlane plane;
+    plane.id = message.id;
+    require(message.label >= 0 && message.label <= 5, "plane.label", "is unknown");
+    plane.label = static_cast<PlaneLabel>(message.label);
+    const Eigen::Vector3d normal = Eigen::Vector3f(message.normal).cast<double>();
+    const Eigen::Vector3d center = Eigen::Vector3f(message.center).cast<double>();
+    require(normal.allFinite() && std::abs(normal.norm() - 1) < 1e-3, "plane.normal", "is not a unit vector");
+    require(center.allFinite() && std::isfinite(message.d), "plane.center", "is not finite");
+    require(std::isfinite(message.angle), "plane.angle", "is not finite");
+    require(std::isfinite(message.unit) && message.unit > 0, "plane.unit", "is not above 0");
+    require(std::isfinite(message.area) && message.area >= 0, "plane.area", "is negative or not finite");
+    require(message.inliers >= 3, "plane.inliers", "are fewer than 3");
+    PlanarRegion& region = plane.region;
+    region.plane.normal = normal.normalized();
+    region.plane.d = -region.plane.normal.dot(center);
+    const Eigen::Matrix3d axes = reference_axes(region.plane.normal);
+    region.box.frame_from_box.linear() =
+        axes *
+        Eigen::AngleAxisd(static_cast<double>(message.angle), Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    region.box.frame_from_box.translation() = center;
+    region.box.half_extents = {message.half_extents[0], message.half_extents[1], 0};
+    region.rms = message.rms;
+    region.moments.count = message.inliers;
+    plane.area = message.area;
+    const double unit = message.unit;
+    region.outline = rings_from(message.ring_sizes, message.vertices.size(), [&](std::size_t i) {
+        return Eigen::Vector2d(unit * message.vertices[i][0], unit * message.vertices[i][1]);
+    });
+    require(is_valid(region), "plane", "has a box, outline or rms that is not finite or not consistent");
+    return plane;
+}
+
+void copy3(const Eigen::Vector3d& from, float* to) {
+    for (int i = 0; i < 3; ++i) to[i] = static_cast<float>(from[i]);
+}
+
+Eigen::Vector3d point_from(const float* from, const char* field) {
+    const Eigen::Vector3d p = Eigen::Vector3f(from).cast<double>();
+    require(p.allFinite(), field, "is not finite");
+    return p;
+}
+
+}  // namespace
+
+plane_map_t to_message(const PlaneMap& map, std::int32_t seq) {
+    plane_map_t message;
+    message.utime = map.utime;
+    message.seq = seq;
+    message.revision = map.revision;
+    for (const MapPlane& plane : map.planes) message.planes.push_back(to_message(plane));
+    message.n_planes = count32(message.planes.size());
+    for (const IntersectionLine& line : map.lines) {
+        map_line_t& m = message.lines.emplace_back();
+        m.plane_a = line.plane_a;
+        m.plane_b = line.plane_b;
+        copy3(line.from, m.from);
+        copy3(line.to, m.to);
+    }
+    message.n_lines = count32(message.lines.size());
+    for (const IntersectionPoint& point : map.points) {
+        map_point_t& m = message.points.emplace_back();
+        std::copy(point.planes.begin(), point.planes.end(), m.planes);
+        copy3(point.position, m.position);
+    }
+    message.n_points = count32(message.points.size());
+    return message;
+}
+
+PlaneMap from_message(const plane_map_t& message) {
+    PlaneMap map;
+    map.utime = message.utime;
+    map.revision = message.revision;
+    for (const map_plane_t& plane : message.planes) {
+        require(map.planes.empty() || plane.id > map.planes.back().id, "plane.id", "does not ascend");
+        map.planes.push_back(from_message(plane));
+    }
+    const auto known = [&](int id) {
+        return std::any_of(map.planes.begin(), map.planes.end(),
+                           [&](const MapPlane& plane) { return plane.id == id; });
+    };
+    for (const map_line_t& line : message.lines) {
+        require(known(line.plane_a) && known(line.plane_b), "line.plane", "is not a plane of the map");
+        map.lines.push_back(
+            {line.plane_a, line.plane_b, point_from(line.from, "line.from"), point_from(line.to, "line.to")});
+    }
+    for (const map_point_t& point : message.points) {
+        IntersectionPoint& p = map.points.emplace_back();
+        std::copy(point.planes, point.planes + 3, p.planes.begin());
+        require(std::all_of(p.planes.begin(), p.planes.end(), known), "point.planes",
+                "is not a plane of the map");
+        p.position = point_from(point.position, "point.position");
+    }
+    return map;
+}
+
+namespace {
+
+bot_core::image_t image_message(int width, int height, int stride, std::int32_t format, std::int64_t utime) {
+    bot_core::image_t message;
+    message.utime = utime;
+    message.width = width;
+    message.height = height;
+    message.row_stride = stride;
+    message.pixelformat = format;
+    message.nmetadata = 0;
+    return message;
+}
+
+}  // namespace
+
+bot_core::image_t depth_image_message(const DepthImage& depth, std::int64_t utime, DepthEncoding encoding) {
+    const bool raw = encoding == DepthEncoding::kRaw;
+    auto message = image_message(depth.width, depth.height, raw ? 2 * depth.width : 0,
+                                 std::int32_t{raw ? std::int32_t{bot_core::image_t::PIXEL_FORMAT_LE_GRAY16}
+                                                  : std::int32_t{bot_core::image_t::PIXEL_FORMAT_INVALID}},
+                                 utime);
+    if (raw) {
+        message.data.resize(2 * depth.pixels.size());
+        if (!depth.pixels.empty()) std::memcpy(message.data.data(), depth.pixels.data(), message.data.size());
+    } else {
+        message.data = encode_zipped_depth(depth);
+    }
+    message.size = count32(message.data.size());
+    return message;
+}
+
+bot_core::image_t color_image_message(const RgbImage& color, std::int64_t utime, ColorEncoding encoding,
+                                      int jpeg_quality) {
+    if (encoding == ColorEncoding::kJpeg) {
+        return jpeg_image_message(encode_jpeg(color, jpeg_quality), color.width, color.height, utime);
+    }
+    auto message =
+        image_message(color.width, color.height, 3 * color.width, bot_core::image_t::PIXEL_FORMAT_RGB, utime);
+    message.data.resize(3 * color.pixels.size());
+    if (!color.pixels.empty()) std::memcpy(message.data.data(), color.pixels.data(), message.data.size());
+    message.size = count32(message.data.size());
+    return message;
+}
+
+bot_core::image_t jpeg_image_message(std::span<const std::uint8_t> jpeg, int width, int height,
+                                     std::int64_t utime) {
+    auto message = image_message(width, height, 0, bot_core::image_t::PIXEL_FORMAT_MJPEG, utime);
+    message.data.assign(jpeg.begin(), jpeg.end());
+    message.size = count32(message.data.size());
+    return message;
+}
+
+}  // namespace planemap

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Between messages and the core's values. Towards values everything is checked (finite, sizes that agree,
+// indices in range): a message that does not make sense throws MessageError naming type and field.
+#pragma once
+
+#include <bot_core/images_t.hpp>
+#include <bot_core/pose_t.hpp>
+#include <planemap/camera_info_t.hpp>
+#include <planemap/keyframe_t.hpp>
+#include <planemap/odometry_t.hpp>
+#include <planemap/planar_regions_t.hpp>
+#include <planemap/plane_map_t.hpp>
+#include <planemap/trajectory_t.hpp>
+#include <span>
+#include <vector>
+
+#include "core/camera.hpp"
+#include "core/image.hpp"
+#include "core/keyframe.hpp"
+#include "core/plane_map.hpp"
+#include "core/region.hpp"
+#include "messages/error.hpp"
+
+namespace planemap {
+
+camera_info_t to_message(const CameraInfo& camera, std::int64_t utime, std::int32_t seq);
+CameraInfo from_message(const camera_info_t& message);
+
+/// The planar regions of one depth image, camera frame.
+struct FrameRegions {
+    std::int64_t utime = 0;  ///< of the depth image
+    std::vector<PlanarRegion> regions;
+};
+planar_regions_t to_message(const FrameRegions& regions, std::int32_t seq);
+FrameRegions from_message(const planar_regions_t& message);
+
+odometry_t to_message(const OdometryEstimate& estimate, std::int32_t seq);
+OdometryEstimate from_message(const odometry_t& message);
+/// For viewers and robots that know bot_core only.
+bot_core::pose_t to_pose_message(const OdometryEstimate& estimate);
+
+keyframe_t to_message(const Keyframe& keyframe, std::int32_t seq);
+Keyframe from_message(const keyframe_t& message);
+
+trajectory_t to_message(const KeyframeTrajectory& trajectory, std::int32_t seq);
+KeyframeTrajectory from_message(const trajectory_t& message);
+
+/// The map in at most 96 bytes a plane and 4 bytes an outline vertex. Outline vertices are rounded to a step
+/// of 1 mm (error at most 0.71 mm in the plane), coarser only for a plane of over 65 m. Which keyframes saw a
+/// plane is reduced to their number; the exact moments stay behind.
+plane_map_t to_message(const PlaneMap& map, std::int32_t seq);
+/// The map back: plane, box, outline, inliers (as moments.count; the other moments are zero), labels,
+/// intersections. keyframes is empty.
+PlaneMap from_message(const plane_map_t& message);
+
+/// How the images of a frame are sent.
+enum class ColorEncoding { kRaw, kJpeg };
+enum class DepthEncoding { kRaw, kZipped };
+
+/// One image each; metadata "seq" (4 bytes, little-endian) lets a receiver count the frames it missed.
+bot_core::image_t depth_image_message(const DepthImage& depth, std::int64_t utime, DepthEncoding encoding);
+bot_core::image_t color_image_message(const RgbImage& color, std::int64_t utime, ColorEncoding encoding,
+                                      int jpeg_quality);
+bot_core::image_t jpeg_image_message(std::span<const std::uint8_t> jpeg, int width, int height,
+                                     std::int64_t utime);
+
+}  // namespace planemap

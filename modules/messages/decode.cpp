@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "messages/decode.hpp"
+
+#include <bot_core/images_t.hpp>
+#include <bot_core/pose_t.hpp>
+#include <exception>
+#include <kinect/frame_msg_t.hpp>
+#include <limits>
+#include <planemap/camera_info_t.hpp>
+#include <planemap/keyframe_t.hpp>
+#include <planemap/map_size_t.hpp>
+#include <planemap/module_status_t.hpp>
+#include <planemap/odometry_t.hpp>
+#include <planemap/planar_regions_t.hpp>
+#include <planemap/plane_map_t.hpp>
+#include <planemap/trajectory_t.hpp>
+#include <string>
+
+namespace planemap {
+
+namespace {
+
+/// Walks encoded bytes: skips what has a fixed size, bounds what has a length of its own.
+class Walker {
+  public:
+    explicit Walker(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
+
+    std::size_t left() const { return bytes_.size() - at_; }
+
+    void skip(std::size_t count, const char* field) {
+        if (count > left())
+            fail(field, "needs " + std::to_string(count) + " bytes, " + std::to_string(left()) + " are left");
+        at_ += count;
+    }
+    /// A big-endian length field of 2 or 4 bytes.
+    std::int32_t length(const char* field, std::size_t width = 4) {
+        std::uint32_t value = 0;
+        const std::size_t start = at_;
+        skip(width, field);
+        for (std::size_t i = 0; i < width; ++i) value = value << 8 | bytes_[start + i];
+        const auto count = width == 2 ? static_cast<std::int16_t>(value) : static_cast<std::int32_t>(value);
+        if (count < 0) fail(field, "is negative: " + std::to_string(count));
+        return count;
+    }
+    void array(std::int32_t count, std::size_t element, const char* field) {
+        if (static_cast<std::size_t>(count) > left() / element) {
+            fail(field,
+                 "has " + std::to_string(count) + " elements, " + std::to_string(left()) + " bytes are left");
+        }
+        skip(static_cast<std::size_t>(count) * element, field);
+    }
+    /// For elements whose size varies: a bound by their smallest size, so that the generated decoder's resize
+    /// is bounded.
+    void bound(std::int32_t count, std::size_t smallest, const char* field) {
+        if (static_cast<std::size_t>(count) > left() / smallest) {
+            fail(field,
+                 "has " + std::to_string(count) + " elements, " + std::to_string(left()) + " bytes are left");
+        }
+    }
+    void string(const char* field) {
+        const std::int32_t count = length(field);
+        if (count < 1) fail(field, "has no terminating zero");
+        skip(static_cast<std::size_t>(count), field);
+    }
+    [[noreturn]] static void fail(const char* field, const std::string& reason) {
+        throw MessageError(std::string(field) + " " + reason);
+    }
+
+  private:
+    std::span<const std::uint8_t> bytes_;
+    std::size_t at_ = 0;
+};
+
+constexpr std::size_t kTransform = 7 * 8;
+
+void walk_image(Walker& w) {
+    w.skip(8 + 4 * 4, "image header");
+    const std::int32_t size = w.length("image.size");
+    w.array(size, 1, "image.data");
+    const std::int32_t metadata = w.length("image.nmetadata");
+    w.bound(metadata, 9, "image.metadata");
+    for (std::int32_t i = 0; i < metadata; ++i) {
+        w.string("image.metadata.key");
+        w.array(w.length("image.metadata.n"), 1, "image.metadata.value");
+    }
+}
+
+void walk_region(Walker& w) {
+    w.skip(8 * (3 + 1 + 1 + 3 + 6) + kTransform + 4 * (3 + 1), "region");
+    w.array(w.length("region.n_rings"), 4, "region.ring_sizes");
+    w.array(w.length("region.n_vertices"), 8, "region.vertices");
+}
+
+void walk_regions(Walker& w) {
+    const std::int32_t count = w.length("n_regions");
+    w.bound(count, 192, "regions");
+    for (std::int32_t i = 0; i < count; ++i) walk_region(w);
+}
+
+void walk(Walker& w, const bot_core::images_t*) {
+    w.skip(8, "utime");
+    const std::int32_t count = w.length("n_images");
+    w.array(count, 2, "image_types");
+    w.bound(count, 32, "images");
+    for (std::int32_t i = 0; i < count; ++i) walk_image(w);
+}
+void walk(Walker& w, const bot_core::pose_t*) {
+    w.skip(8 + 8 * 16, "pose");
+}
+void walk(Walker& w, const kinect::frame_msg_t*) {
+    w.skip(8 + 8 + 4, "image header");
+    w.array(w.length("image.image_data_nbytes"), 1, "image.image_data");
+    w.skip(1, "image.image_data_format");
+    w.skip(8 + 4, "depth header");
+    w.array(w.length("depth.depth_data_nbytes"), 1, "depth.depth_data");
+    w.skip(1 + 1 + 4, "depth format");
+    w.skip(6 + 1 + 24 + 8 + 1 + 1, "sensor state");
+}
+void walk(Walker& w, const camera_info_t*) {
+    w.skip(8 + 4, "utime");
+    w.string("serial");
+    w.skip(2 * (8 + 32) + 1 + kTransform + 6 * 8, "intrinsics");
+}
+void walk(Walker& w, const planar_regions_t*) {
+    w.skip(8 + 4, "utime");
+    walk_regions(w);
+}
+void walk(Walker& w, const odometry_t*) {
+    w.skip(8 + 8 + 4 + 1 + kTransform + 4 + kTransform + 36 * 8 + 12, "odometry");
+}
+void walk(Walker& w, const keyframe_t*) {
+    w.skip(8 + 8 + 4 + 4 + kTransform + 4 + kTransform + 36 * 8, "keyframe");
+    const std::int32_t features = w.length("n_features");
+    w.array(features, 8, "pixels");
+    w.array(features, 12, "points");
+    w.array(features, 2, "regions_of");
+    w.array(w.length("n_descriptor_bytes"), 1, "descriptors");
+    walk_regions(w);
+}
+void walk(Walker& w, const trajectory_t*) {
+    w.skip(8 + 4 + 4 + 4 + kTransform, "trajectory");
+    w.array(w.length("n_keyframes"), 4 + 8 + kTransform, "keyframes");
+}
+void walk(Walker& w, const plane_map_t*) {
+    w.skip(8 + 4 + 4, "utime");
+    const std::int32_t planes = w.length("n_planes");
+    w.bound(planes, 64, "planes");
+    for (std::int32_t i = 0; i < planes; ++i) {
+        w.skip(4 + 1 + 4 * (3 + 1 + 3 + 1 + 2 + 1 + 1 + 1) + 2 + 4, "plane");
+        w.array(w.length("plane.n_rings", 2), 2, "plane.ring_sizes");
+        w.array(w.length("plane.n_vertices"), 4, "plane.vertices");
+    }
+    w.array(w.length("n_lines"), 8 + 24, "lines");
+    w.array(w.length("n_points"), 12 + 12, "points");
+}
+void walk(Walker& w, const map_size_t*) {
+    w.skip(8 + 4 + 8 * 6 + 8, "sizes");
+}
+void walk(Walker& w, const module_status_t*) {
+    w.skip(8 + 4, "utime");
+    w.string("module");
+    w.skip(1, "state");
+    w.string("text");
+    w.skip(8 + 4 + 4 + 5 * 8, "counters");
+}
+
+}  // namespace
+
+template <typename T>
+T decode(std::span<const std::uint8_t> bytes) {
+    const std::string type = T::getTypeName();
+    if (bytes.size() < 8)
+        throw MessageError(type + ": " + std::to_string(bytes.size()) + " bytes, not even a fingerprint");
+    if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
+        throw MessageError(type + ": over 2 GiB");
+    std::uint64_t fingerprint = 0;
+    for (int i = 0; i < 8; ++i) fingerprint = fingerprint << 8 | bytes[static_cast<std::size_t>(i)];
+    if (fingerprint != static_cast<std::uint64_t>(T::getHash()))
+        throw MessageError(type + ": the fingerprint is another type's");
+    try {
+        Walker walker(bytes.subspan(8));
+        walk(walker, static_cast<const T*>(nullptr));
+        if (walker.left() != 0) throw MessageError(std::to_string(walker.left()) + " bytes too many");
+        T message;
+        const int used = message.decode(bytes.data(), 0, static_cast<int>(bytes.size()));
+        if (used != static_cast<int>(bytes.size()))
+            throw MessageError("the decoder read " + std::to_string(used) + " bytes");
+        return message;
+    } catch (const std::exception& error) {
+        throw MessageError(type + ": " + error.what());
+    }
+}
+
+template bot_core::images_t decode(std::span<const std::uint8_t>);
+template bot_core::pose_t decode(std::span<const std::uint8_t>);
+template kinect::frame_msg_t decode(std::span<const std::uint8_t>);
+template camera_info_t decode(std::span<const std::uint8_t>);
+template planar_regions_t decode(std::span<const std::uint8_t>);
+template odometry_t decode(std::span<const std::uint8_t>);
+template keyframe_t decode(std::span<const std::uint8_t>);
+template trajectory_t decode(std::span<const std::uint8_t>);
+template plane_map_t decode(std::span<const std::uint8_t>);
+template map_size_t decode(std::span<const std::uint8_t>);
+template module_status_t decode(std::span<const std::uint8_t>);
+
+}  // namespace planemap

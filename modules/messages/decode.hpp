@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Decoding what the bus delivers. The generated decoders allocate what a length field asks for before they
+// look at how many bytes there are, and throw on negative lengths; so every message is walked and bounded
+// first.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "messages/error.hpp"
+
+namespace bot_core {
+class images_t;
+class pose_t;
+}  // namespace bot_core
+namespace kinect {
+class frame_msg_t;
+}
+namespace planemap {
+class camera_info_t;
+class planar_regions_t;
+class odometry_t;
+class keyframe_t;
+class trajectory_t;
+class plane_map_t;
+class map_size_t;
+class module_status_t;
+
+/// Decodes one message of the type. Throws MessageError when the fingerprint is another type's, when a length
+/// is negative or larger than the bytes that are there, or when bytes are missing or left over. Never
+/// allocates more than a small multiple of the message's size. Defined for the types declared above.
+template <typename T>
+T decode(std::span<const std::uint8_t> bytes);
+
+}  // namespace planemap

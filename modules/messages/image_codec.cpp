@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "messages/image_codec.hpp"
+
+#include <libdeflate.h>
+#include <turbojpeg.h>
+
+#include <bit>
+#include <cstring>
+#include <memory>
+#include <new>
+#include <string>
+
+namespace planemap {
+
+static_assert(std::endian::native == std::endian::little,
+              "depth travels as little-endian rows and is copied as it is");
+static_assert(sizeof(Rgb) == 3);
+
+namespace {
+
+struct TurboDeleter {
+    void operator()(void* handle) const { tjDestroy(handle); }
+};
+using Turbo = std::unique_ptr<void, TurboDeleter>;
+
+/// One decompressor a thread: making one costs more than a small image.
+void* decompressor() {
+    thread_local Turbo handle(tjInitDecompress());
+    if (!handle) throw std::bad_alloc();
+    return handle.get();
+}
+
+void decode_into(std::span<const std::uint8_t> jpeg, int width, int height, int pixel_format,
+                 std::uint8_t* out) {
+    void* handle = decompressor();
+    int w = 0, h = 0, subsampling = 0, colorspace = 0;
+    if (tjDecompressHeader3(handle, jpeg.data(), jpeg.size(), &w, &h, &subsampling, &colorspace) != 0) {
+        throw MessageError(std::string("JPEG: ") + tjGetErrorStr2(handle));
+    }
+    if (w != width || h != height) {
+        throw MessageError("JPEG: the image is " + std::to_string(w) + "x" + std::to_string(h) +
+                           ", expected " + std::to_string(width) + "x" + std::to_string(height));
+    }
+    // Accurate transforms, so that luma is the same whatever decodes it; a warning (cut short, corrupt) is an
+    // error.
+    const int flags = TJFLAG_ACCURATEDCT | TJFLAG_STOPONWARNING;
+    if (tjDecompress2(handle, jpeg.data(), jpeg.size(), out, width, 0, height, pixel_format, flags) != 0) {
+        throw MessageError(std::string("JPEG: ") + tjGetErrorStr2(handle));
+    }
+}
+
+}  // namespace
+
+GrayImage decode_jpeg_luma(std::span<const std::uint8_t> jpeg, int width, int height) {
+    GrayImage image(width, height);
+    decode_into(jpeg, width, height, TJPF_GRAY, image.pixels.data());
+    return image;
+}
+
+RgbImage decode_jpeg(std::span<const std::uint8_t> jpeg, int width, int height) {
+    RgbImage image(width, height);
+    decode_into(jpeg, width, height, TJPF_RGB, &image.pixels.data()->r);
+    return image;
+}
+
+std::vector<std::uint8_t> encode_jpeg(const RgbImage& image, int quality) {
+    const Turbo handle(tjInitCompress());
+    if (!handle) throw std::bad_alloc();
+    std::vector<std::uint8_t> jpeg(tjBufSize(image.width, image.height, TJSAMP_420));
+    unsigned char* out = jpeg.data();
+    unsigned long size = jpeg.size();
+    if (tjCompress2(handle.get(), &image.pixels.data()->r, image.width, 0, image.height, TJPF_RGB, &out,
+                    &size, TJSAMP_420, quality, TJFLAG_NOREALLOC) != 0) {
+        throw std::runtime_error(std::string("JPEG: ") + tjGetErrorStr2(handle.get()));
+    }
+    jpeg.resize(size);
+    return jpeg;
+}
+
+GrayImage luma(const RgbImage& image) {
+    GrayImage gray(image.width, image.height);
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+        const Rgb p = image.pixels[i];
+        gray.pixels[i] = static_cast<std::uint8_t>((19595 * p.r + 38470 * p.g + 7471 * p.b + 32768) >> 16);
+    }
+    return gray;
+}
+
+DepthImage decode_zipped_depth(std::span<const std::uint8_t> zipped, int width, int height) {
+    struct Deleter {
+        void operator()(libdeflate_decompressor* d) const { libdeflate_free_decompressor(d); }
+    };
+    thread_local std::unique_ptr<libdeflate_decompressor, Deleter> inflater(libdeflate_alloc_decompressor());
+    if (!inflater) throw std::bad_alloc();
+    DepthImage depth(width, height);
+    // With no pointer for the actual size, libdeflate fails unless the stream fills the image exactly.
+    const auto result = libdeflate_zlib_decompress(inflater.get(), zipped.data(), zipped.size(),
+                                                   depth.pixels.data(), depth.pixels.size() * 2, nullptr);
+    switch (result) {
+        case LIBDEFLATE_SUCCESS:
+            return depth;
+        case LIBDEFLATE_SHORT_OUTPUT:
+            throw MessageError("zipped depth: fewer pixels than the image's size says");
+        case LIBDEFLATE_INSUFFICIENT_SPACE:
+            throw MessageError("zipped depth: more pixels than the image's size says");
+        default:
+            throw MessageError("zipped depth: corrupt or cut short");
+    }
+}
+
+std::vector<std::uint8_t> encode_zipped_depth(const DepthImage& depth, int level) {
+    struct Deleter {
+        void operator()(libdeflate_compressor* c) const { libdeflate_free_compressor(c); }
+    };
+    const std::unique_ptr<libdeflate_compressor, Deleter> deflater(libdeflate_alloc_compressor(level));
+    if (!deflater) throw std::bad_alloc();
+    const std::size_t bytes = depth.pixels.size() * 2;
+    std::vector<std::uint8_t> zipped(libdeflate_zlib_compress_bound(deflater.get(), bytes));
+    zipped.resize(
+        libdeflate_zlib_compress(deflater.get(), depth.pixels.data(), bytes, zipped.data(), zipped.size()));
+    return zipped;
+}
+
+}  // namespace planemap

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "messages/module_status.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+
+#include "messages/channels.hpp"
+
+namespace planemap {
+
+namespace {
+constexpr std::int64_t kPeriodUs = 1000000;
+}
+
+ModuleStatus::ModuleStatus(std::string module)
+    : module_(std::move(module)), channel_(channels::kStatusPrefix + module_) {
+    std::transform(channel_.begin(), channel_.end(), channel_.begin(),
+                   [](unsigned char c) { return std::toupper(c); });
+    last_ = message(0, false);
+}
+
+Bus::Handler ModuleStatus::guard(Bus::Handler handler) {
+    return [this, handler = std::move(handler)](const RawMessage& message) {
+        try {
+            handler(message);
+        } catch (const MessageError& error) {
+            decode_error();
+            set_text(error.what());
+            throw;
+        }
+    };
+}
+
+void ModuleStatus::received(std::optional<std::uint32_t> seq) {
+    ++received_;
+    if (seq && last_seq_ && *seq > *last_seq_ + 1) gaps_ += *seq - *last_seq_ - 1;
+    if (seq) last_seq_ = seq;
+}
+
+ModuleStatus::Work::~Work() {
+    const double ms =
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
+    status_.work_ms_.add(ms);
+    status_.window_ms_.add(ms);
+}
+
+module_status_t ModuleStatus::message(std::int64_t now_us, bool stopped) {
+    const double seconds = static_cast<double>(now_us - window_start_us_) * 1e-6;
+    const std::int64_t inputs = received_ - window_received_;
+    module_status_t m;
+    m.utime = now_us;
+    m.seq = seq_++;
+    m.module = module_;
+    m.text = text_;
+    m.rate_hz = seconds > 0 ? static_cast<double>(inputs) / seconds : 0;
+    m.latency_median_ms = static_cast<float>(window_ms_.median());
+    m.latency_p95_ms = static_cast<float>(window_ms_.p95());
+    m.received = received_;
+    m.published = published_;
+    m.dropped = dropped_;
+    m.decode_errors = decode_errors_;
+    m.gaps = gaps_;
+    const bool working = inputs > 0 || published_ > window_published_;
+    m.state = stopped                                         ? module_status_t::STOPPED
+              : received_ == 0 && published_ == 0             ? module_status_t::WAITING
+              : !working                                      ? module_status_t::IDLE
+              : inputs > 0 && published_ == window_published_ ? module_status_t::FAILING
+                                                              : module_status_t::RUNNING;
+    return m;
+}
+
+bool ModuleStatus::publish_if_due(Bus& bus, std::int64_t now_us, bool stopped) {
+    if (window_start_us_ == 0) window_start_us_ = now_us;
+    if (!stopped && now_us - window_start_us_ < kPeriodUs) return false;
+    last_ = message(now_us, stopped);
+    bus.publish(channel_, last_);
+    window_start_us_ = now_us;
+    window_received_ = received_;
+    window_published_ = published_;
+    window_ms_ = Histogram();
+    return true;
+}
+
+std::string ModuleStatus::line() const {
+    static constexpr const char* kStates[] = {"waiting", "running", "idle", "failing", "stopped"};
+    char line[256];
+    std::snprintf(
+        line, sizeof(line),
+        "%s: %.1f Hz, %.2f ms (p95 %.2f), %lld in, %lld out, %lld dropped, %lld corrupt, %lld missed",
+        kStates[last_.state], last_.rate_hz, static_cast<double>(last_.latency_median_ms),
+        static_cast<double>(last_.latency_p95_ms), static_cast<long long>(received_),
+        static_cast<long long>(published_), static_cast<long long>(dropped_),
+        static_cast<long long>(decode_errors_), static_cast<long long>(gaps_));
+    return text_.empty() ? line : std::string(line) + "; " + text_;
+}
+
+}  // namespace planemap

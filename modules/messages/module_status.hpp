@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <planemap/module_status_t.hpp>
+#include <string>
+
+#include "core/histogram.hpp"
+#include "messages/bus.hpp"
+
+namespace planemap {
+
+/// Counts what a module does and tells it once a second on PLANEMAP_STATUS_<MODULE>.
+class ModuleStatus {
+  public:
+    /// module: lower case, e.g. "segmentation".
+    explicit ModuleStatus(std::string module);
+
+    /// Wraps a handler: an input that throws MessageError counts as a decode error (and goes on to the bus,
+    /// which logs it).
+    Bus::Handler guard(Bus::Handler handler);
+
+    /// One input of the module's main stream; its sequence number, where there is one, shows what was missed.
+    void received(std::optional<std::uint32_t> seq = std::nullopt);
+    void published() { ++published_; }
+    void dropped(std::int64_t count = 1) { dropped_ += count; }
+    void decode_error() { ++decode_errors_; }
+    /// What keeps the module from working, or what it found; shown in the status line.
+    void set_text(std::string text) { text_ = std::move(text); }
+
+    /// Measures the work on one input from construction to destruction.
+    class Work {
+      public:
+        explicit Work(ModuleStatus& status) : status_(status) {}
+        ~Work();
+        Work(const Work&) = delete;
+        Work& operator=(const Work&) = delete;
+
+      private:
+        ModuleStatus& status_;
+        std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+    };
+
+    const std::string& module() const { return module_; }
+    std::int64_t received_count() const { return received_; }
+    std::int64_t dropped_count() const { return dropped_; }
+    std::int64_t decode_error_count() const { return decode_errors_; }
+    /// Milliseconds of work for each input since the start.
+    const Histogram& work_ms() const { return work_ms_; }
+
+    /// Publishes when a second has passed since the last time; `stopped` publishes at once, as the last
+    /// message. Returns true if it did.
+    bool publish_if_due(Bus& bus, std::int64_t now_us, bool stopped = false);
+    /// The same in a line that a human can read.
+    std::string line() const;
+
+  private:
+    module_status_t message(std::int64_t now_us, bool stopped);
+
+    std::string module_, channel_, text_;
+    std::int64_t received_ = 0, published_ = 0, dropped_ = 0, decode_errors_ = 0, gaps_ = 0;
+    std::optional<std::uint32_t> last_seq_;
+    Histogram work_ms_, window_ms_;
+    std::int64_t window_start_us_ = 0, window_received_ = 0, window_published_ = 0;
+    module_status_t last_;
+    std::int32_t seq_ = 0;
+};
+
+}  // namespace planemap

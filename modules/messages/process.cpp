@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "messages/process.hpp"
+
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+
+namespace planemap {
+
+namespace {
+
+std::atomic<bool> stop{false};
+static_assert(std::atomic<bool>::is_always_lock_free);
+
+void on_signal(int signal) {
+    if (stop.exchange(true)) {
+        std::signal(signal, SIG_DFL);
+        std::raise(signal);
+    }
+}
+
+constexpr std::int64_t kLinePeriodUs = 5000000;
+
+void serve(Shell& shell, Bus& bus) {
+    std::int64_t last_line = now_us();
+    while (!stop_requested()) {
+        const int wait_ms = shell.poll();
+        if (wait_ms < 0) break;
+        bus.handle(std::min(wait_ms, 200));
+        const std::int64_t now = now_us();
+        shell.status().publish_if_due(bus, now);
+        if (now - last_line >= kLinePeriodUs) {
+            spdlog::info("{}", shell.status().line());
+            last_line = now;
+        }
+    }
+    shell.finish();
+    shell.status().publish_if_due(bus, now_us(), true);
+    spdlog::info("{}", shell.status().line());
+}
+
+}  // namespace
+
+bool stop_requested() {
+    return stop.load();
+}
+
+void catch_stop_signals() {
+    struct sigaction action = {};
+    action.sa_handler = on_signal;
+    sigemptyset(&action.sa_mask);
+    sigaction(SIGINT, &action, nullptr);
+    sigaction(SIGTERM, &action, nullptr);
+    std::signal(SIGPIPE, SIG_IGN);
+}
+
+void start_logging(const std::string& program, bool verbose) {
+    auto logger = spdlog::get(program);
+    if (!logger) logger = spdlog::stderr_color_mt(program);
+    logger->set_pattern("%n: %^%l%$: %v");
+    logger->set_level(verbose ? spdlog::level::debug : spdlog::level::info);
+    spdlog::set_default_logger(logger);
+}
+
+int parse_flags(CLI::App& app, int argc, char** argv) {
+    try {
+        app.parse(argc, argv);
+        return -1;
+    } catch (const CLI::Success& success) {
+        return app.exit(success);
+    } catch (const CLI::ParseError& error) {
+        std::fprintf(stderr, "%s: %s (see --help)\n", app.get_name().c_str(), error.what());
+        return 2;
+    }
+}
+
+int run_main(const std::string& program, const std::function<int()>& body) {
+    try {
+        return body();
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "%s: %s\n", program.c_str(), error.what());
+        return 1;
+    }
+}
+
+Process::Process(std::string module, const std::string& description)
+    : module_(std::move(module)), program_("planemap-" + module_), app_(description, program_) {
+    app_.add_option("-l,--lcm-url", lcm_url_,
+                    "LCM URL; default: LCM_DEFAULT_URL, else udpm on this machine only (ttl=0)");
+    app_.set_config("--config", "", "Read flags from an INI or TOML file: one `name = value` a line");
+    app_.allow_config_extras(CLI::config_extras_mode::error);
+    app_.add_flag("-v,--verbose", verbose_, "Log more");
+}
+
+int Process::run(int argc, char** argv, const std::function<std::unique_ptr<Shell>(Bus&)>& make_shell) {
+    const int parsed = parse_flags(app_, argc, argv);
+    if (parsed >= 0) return parsed;
+    return run_main(program_, [&] {
+        start_logging(program_, verbose_);
+        catch_stop_signals();
+        Bus bus(lcm_url_);
+        const std::unique_ptr<Shell> shell = make_shell(bus);
+        spdlog::info("on {}", bus.url());
+        serve(*shell, bus);
+        return 0;
+    });
+}
+
+}  // namespace planemap

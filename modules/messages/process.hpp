@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What every planemap process does alike: flags, a bus, status once a second, a clean stop.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "messages/bus.hpp"
+#include "messages/module_status.hpp"
+
+namespace planemap {
+
+/// A module on the bus. Its constructor subscribes; its handlers run in Bus::handle().
+class Shell {
+  public:
+    virtual ~Shell() = default;
+    virtual ModuleStatus& status() = 0;
+    /// Work that no message starts. Returns the milliseconds until it wants to be called again, or a negative
+    /// number when the module is done (the sensor at the end of its input).
+    virtual int poll() { return 100; }
+    /// Called once before a clean stop: publish or write what is still held back.
+    virtual void finish() {}
+};
+
+/// True once SIGINT or SIGTERM came; a second signal ends the process at once.
+bool stop_requested();
+/// Installs the handlers behind stop_requested().
+void catch_stop_signals();
+
+/// Logging as all programs do it: to stderr, a line an entry, the program's name first.
+void start_logging(const std::string& program, bool verbose);
+
+/// Parses flags into `app`. Returns -1 to go on, or the exit code: 0 after --help, 2 for wrong flags (one
+/// line on stderr).
+int parse_flags(CLI::App& app, int argc, char** argv);
+
+/// Runs body, and turns an exception that reaches the top into one line on stderr and exit code 1.
+int run_main(const std::string& program, const std::function<int()>& body);
+
+/// One module as a process, planemap-<module>.
+class Process {
+  public:
+    Process(std::string module, const std::string& description);
+
+    /// For the module's own flags.
+    CLI::App& flags() { return app_; }
+    /// Parses flags, opens the bus, makes the shell and runs it until it is done or a signal comes.
+    /// Returns the exit code: 0 after a clean stop, 1 for an error (one line on stderr), 2 for wrong flags.
+    int run(int argc, char** argv, const std::function<std::unique_ptr<Shell>(Bus&)>& make_shell);
+
+  private:
+    std::string module_, program_;
+    CLI::App app_;
+    std::string lcm_url_;
+    bool verbose_ = false;
+};
+
+}  // namespace planemap

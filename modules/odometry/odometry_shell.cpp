@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "odometry/odometry_shell.hpp"
+
+#include <algorithm>
+
+#include "messages/channels.hpp"
+#include "messages/decode.hpp"
+
+namespace planemap {
+
+OdometryShell::OdometryShell(Bus& bus, std::shared_ptr<FrameDecoder> decoder, const OdometryOptions& options)
+    : bus_(bus), decoder_(std::move(decoder)), odometry_(options) {
+    bus_.subscribe(channels::kFrame, status_.guard([this](const RawMessage& m) { on_frame(m); }), 8);
+    bus_.subscribe(channels::kRegions, status_.guard([this](const RawMessage& m) { on_regions(m); }), 8);
+}
+
+void OdometryShell::on_frame(const RawMessage& message) {
+    auto frame = decoder_->decode(message);
+    if (!frame) {
+        status_.dropped();
+        status_.set_text(std::string("no ") + channels::kCameraInfo + " yet");
+        return;
+    }
+    status_.received(frame->seq());
+    Waiting input{std::move(frame), std::nullopt};
+    const auto early = std::find_if(early_regions_.begin(), early_regions_.end(),
+                                    [&](const FrameRegions& r) { return r.utime == input.frame->utime(); });
+    if (early != early_regions_.end()) {
+        input.regions = std::move(*early);
+        early_regions_.erase(early);
+    }
+    waiting_.push_back(std::move(input));
+    process_ready(missing_ >= kMaxMissing && !bus_.in_process() ? 0 : kMaxWaiting);
+}
+
+void OdometryShell::on_regions(const RawMessage& message) {
+    FrameRegions regions = from_message(decode<planar_regions_t>(message.bytes));
+    missing_ = 0;
+    const auto input = std::find_if(waiting_.begin(), waiting_.end(),
+                                    [&](const Waiting& w) { return w.frame->utime() == regions.utime; });
+    if (input != waiting_.end()) {
+        input->regions = std::move(regions);
+        process_ready(kMaxWaiting);
+        return;
+    }
+    early_regions_.push_back(std::move(regions));
+    if (early_regions_.size() > kMaxWaiting) {
+        early_regions_.pop_front();  // its frame was handled without it, or never came
+        status_.dropped();
+    }
+}
+
+void OdometryShell::process_ready(std::size_t max_waiting) {
+    while (!waiting_.empty() && (waiting_.front().regions || waiting_.size() > max_waiting)) {
+        const Waiting input = std::move(waiting_.front());
+        waiting_.pop_front();
+        if (!input.regions) ++missing_;
+        process(input);
+    }
+}
+
+void OdometryShell::process(const Waiting& input) {
+    const Frame& frame = *input.frame;
+    OdometryFrame in;
+    in.utime = frame.utime();
+    in.camera = &frame.camera();
+    in.depth = &frame.depth_in_color();
+    try {
+        in.gray = frame.gray();
+        in.color_utime = frame.color_utime();
+    } catch (const MessageError& error) {  // a broken colour image leaves a good depth image
+        status_.decode_error();
+        status_.set_text(error.what());
+    }
+    if (input.regions) in.regions = input.regions->regions;
+    OdometryResult result;
+    {
+        const ModuleStatus::Work work(status_);
+        result = odometry_.process(in);
+    }
+    bus_.publish(channels::kOdometry, to_message(result.estimate, odometry_seq_++));
+    if (result.estimate.status != TrackingStatus::kLost)
+        bus_.publish(channels::kPose, to_pose_message(result.estimate));
+    if (result.keyframe) bus_.publish(channels::kKeyframe, to_message(*result.keyframe, keyframe_seq_++));
+    status_.published();
+    status_.set_text(result.estimate.status == TrackingStatus::kLost
+                         ? "lost"
+                         : "tracked, " + std::to_string(result.estimate.inliers) + " of " +
+                               std::to_string(result.estimate.features) + " features");
+}
+
+void OdometryShell::finish() {
+    process_ready(0);
+}
+
+}  // namespace planemap

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "segmentation/segmentation_shell.hpp"
+
+int main(int argc, char** argv) {
+    planemap::Process process("segmentation", "Depth images to planar regions.");
+    planemap::SegmentationOptions options;
+    add_flags(process.flags(), options);
+    return process.run(argc, argv, [&](planemap::Bus& bus) {
+        return std::make_unique<planemap::SegmentationShell>(
+            bus, std::make_shared<planemap::FrameDecoder>(bus), options);
+    });
+}

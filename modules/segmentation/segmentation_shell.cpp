@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "segmentation/segmentation_shell.hpp"
+
+#include "messages/channels.hpp"
+#include "messages/convert.hpp"
+
+namespace planemap {
+
+SegmentationShell::SegmentationShell(Bus& bus, std::shared_ptr<FrameDecoder> decoder,
+                                     const SegmentationOptions& options)
+    : bus_(bus), decoder_(std::move(decoder)), segmenter_(make_segmenter(options)) {
+    // A short queue: late regions are worth less than the next frame's.
+    bus_.subscribe(channels::kFrame, status_.guard([this](const RawMessage& m) { on_frame(m); }), 4);
+}
+
+void SegmentationShell::on_frame(const RawMessage& message) {
+    const auto frame = decoder_->decode(message);
+    if (!frame) {
+        status_.dropped();
+        status_.set_text(std::string("no ") + channels::kCameraInfo + " yet");
+        return;
+    }
+    status_.received(frame->seq());
+    const DepthImage& depth = frame->depth();
+    FrameRegions regions;
+    regions.utime = frame->utime();
+    {
+        const ModuleStatus::Work work(status_);
+        segmenter_->segment(depth, frame->camera(), segmentation_);
+        const Pose& camera_from_depth = frame->camera().color_from_depth;
+        for (const PlanarRegion& region : segmentation_.regions)
+            regions.regions.push_back(camera_from_depth * region);
+    }
+    bus_.publish(channels::kRegions, to_message(regions, seq_++));
+    status_.published();
+    status_.set_text(std::to_string(regions.regions.size()) + " regions");
+}
+
+}  // namespace planemap

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+
+#include "messages/frame_decoder.hpp"
+#include "messages/process.hpp"
+#include "segmentation/segmentation.hpp"
+
+namespace planemap {
+
+/// OPENNI_FRAME to PLANEMAP_REGIONS: the depth image's planar regions in the camera frame (the colour
+/// camera's).
+class SegmentationShell : public Shell {
+  public:
+    SegmentationShell(Bus& bus, std::shared_ptr<FrameDecoder> decoder, const SegmentationOptions& options);
+
+    ModuleStatus& status() override { return status_; }
+
+  private:
+    void on_frame(const RawMessage& message);
+
+    Bus& bus_;
+    std::shared_ptr<FrameDecoder> decoder_;
+    std::unique_ptr<Segmenter> segmenter_;
+    Segmentation segmentation_;
+    ModuleStatus status_{"segmentation"};
+    std::int32_t seq_ = 0;
+};
+
+/// Flags for the options, each named --<prefix>NAME.
+void add_flags(CLI::App& app, SegmentationOptions& options, const std::string& prefix = "");
+
+}  // namespace planemap

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// planemap-report: prints the size report of a finished run.
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "core/files.hpp"
+#include "messages/process.hpp"
+#include "run/report.hpp"
+
+int main(int argc, char** argv) {
+    CLI::App app(
+        "Prints the report of a run: what the plane map takes beside an OctoMap, clouds and voxels of the "
+        "same run, and at\n"
+        "what coverage. Reads report.json of planemap-run's output folder and writes report.md beside it "
+        "anew.",
+        "planemap-report");
+    std::filesystem::path folder;
+    app.add_option("folder", folder, "Output folder of planemap-run")->required();
+    const int parsed = planemap::parse_flags(app, argc, argv);
+    if (parsed >= 0) return parsed;
+    return planemap::run_main("planemap-report", [&] {
+        const std::filesystem::path file = folder / "report.json";
+        nlohmann::ordered_json report;
+        try {
+            report = nlohmann::ordered_json::parse(planemap::read_file(file));
+        } catch (const nlohmann::json::exception& error) {
+            throw std::runtime_error(file.string() + ": " + error.what());
+        }
+        const std::string markdown = planemap::report_markdown(report);
+        planemap::write_file(folder / "report.md", markdown);
+        std::fputs(markdown.c_str(), stdout);
+        return 0;
+    });
+}

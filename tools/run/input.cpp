@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run/input.hpp"
+
+#include <bot_core/images_t.hpp>
+#include <filesystem>
+#include <planemap/camera_info_t.hpp>
+#include <stdexcept>
+
+#include "messages/channels.hpp"
+#include "messages/log.hpp"
+#include "sensor/sensor_shell.hpp"
+
+namespace planemap {
+
+namespace {
+
+/// A folder or the simulator, through the same shell as the sensor process; pixels stay raw, nobody decodes
+/// them twice.
+class SensorInput : public Input {
+  public:
+    SensorInput(const std::string& name, Bus& bus) : shell_(bus, open_source(name), in_process()) {}
+
+    bool feed() override { return shell_.poll() >= 0; }
+    std::int64_t frames() const override { return shell_.frames() + shell_.broken(); }
+    std::optional<double> progress() const override {
+        const auto size = shell_.source().size();
+        if (!size || *size == 0) return std::nullopt;
+        return static_cast<double>(frames()) / static_cast<double>(*size);
+    }
+    std::string complaints() const override {
+        std::string text;
+        if (shell_.broken() > 0) text += std::to_string(shell_.broken()) + " frames could not be read";
+        if (shell_.colorless() > 0) {
+            text += (text.empty() ? "" : ", ") + std::to_string(shell_.colorless()) + " without their colour";
+        }
+        return text;
+    }
+
+  private:
+    static SensorShellOptions in_process() {
+        SensorShellOptions options;
+        options.speed = 0;
+        options.color = ColorEncoding::kRaw;
+        options.depth = DepthEncoding::kRaw;
+        return options;
+    }
+    SensorShell shell_;
+};
+
+std::uint64_t fingerprint(const LogEvent& event) {
+    std::uint64_t value = 0;
+    for (std::size_t i = 0; i < 8 && event.bytes.size() >= 8; ++i) value = value << 8 | event.bytes[i];
+    return value;
+}
+
+/// An LCM log: images_t from the first channel that has them, the camera from the first camera_info_t.
+class LogInput : public Input {
+  public:
+    LogInput(const std::string& name, Bus& bus, bool has_camera) : name_(name), bus_(bus), log_(name) {
+        LogReader ahead(name);
+        LogEvent event;
+        bool described = false;
+        while (!(described && !channel_.empty()) && ahead.next(event)) {
+            const std::uint64_t type = fingerprint(event);
+            if (channel_.empty() && type == static_cast<std::uint64_t>(bot_core::images_t::getHash()))
+                channel_ = event.channel;
+            if (!described && type == static_cast<std::uint64_t>(camera_info_t::getHash())) {
+                described = true;
+                if (!has_camera) bus_.publish_bytes(channels::kCameraInfo, event.bytes);
+            }
+        }
+        if (channel_.empty())
+            throw std::runtime_error(name + ": no camera frames (bot_core.images_t) in this log");
+        if (!described && !has_camera) {
+            throw std::runtime_error(
+                name + ": no camera_info_t in this log says what its camera is; give --camera camera.json");
+        }
+        follow_camera_ = !has_camera;
+    }
+
+    bool feed() override {
+        LogEvent event;
+        while (log_.next(event)) {
+            if (event.channel == channel_) {
+                bus_.publish_bytes(channels::kFrame, event.bytes);
+                ++frames_;
+                return true;
+            }
+            if (follow_camera_ && event.channel == channels::kCameraInfo) {
+                bus_.publish_bytes(channels::kCameraInfo, event.bytes);
+            }
+        }
+        return false;
+    }
+    std::int64_t frames() const override { return frames_; }
+    std::optional<double> progress() const override {
+        return static_cast<double>(log_.bytes_read()) /
+               static_cast<double>(std::max<std::uint64_t>(log_.bytes_total(), 1));
+    }
+    std::string complaints() const override {
+        std::string text;
+        if (log_.bytes_skipped() > 0)
+            text = std::to_string(log_.bytes_skipped()) + " bytes of " + name_ + " are no LCM events";
+        if (log_.truncated())
+            text +=
+                (text.empty() ? name_ : "; it") + std::string(" is cut short: its last event is not whole");
+        return text;
+    }
+
+  private:
+    std::string name_;
+    Bus& bus_;
+    LogReader log_;
+    std::string channel_;
+    std::int64_t frames_ = 0;
+    bool follow_camera_ = true;
+};
+
+}  // namespace
+
+std::unique_ptr<Input> open_input(const std::string& name, Bus& bus,
+                                  const std::optional<CameraInfo>& camera) {
+    std::error_code ignored;
+    if (std::filesystem::is_regular_file(name, ignored))
+        return std::make_unique<LogInput>(name, bus, camera.has_value());
+    return std::make_unique<SensorInput>(name, bus);
+}
+
+}  // namespace planemap

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "core/camera.hpp"
+#include "messages/bus.hpp"
+
+namespace planemap {
+
+/// What planemap-run reads: puts one frame after the other on the bus, as a sensor would.
+class Input {
+  public:
+    virtual ~Input() = default;
+    /// Publishes up to and including the next frame; false when there is none.
+    virtual bool feed() = 0;
+    /// Frames that were read, the broken ones included.
+    virtual std::int64_t frames() const = 0;
+    /// How far the input is read, 0 to 1; nothing if that is not known.
+    virtual std::optional<double> progress() const = 0;
+    /// What the user should know at the end (skipped bytes, broken frames); empty if all is well.
+    virtual std::string complaints() const = 0;
+};
+
+/// Opens a TUM-layout folder, an LCM log or a simulator name (sim:...). `camera` is for logs that do not
+/// describe theirs. Throws std::runtime_error or std::invalid_argument with one line that names input and
+/// reason.
+std::unique_ptr<Input> open_input(const std::string& name, Bus& bus, const std::optional<CameraInfo>& camera);
+
+}  // namespace planemap

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run/pipeline.hpp"
+
+#include <algorithm>
+
+#include "messages/channels.hpp"
+#include "messages/convert.hpp"
+#include "messages/decode.hpp"
+
+namespace planemap {
+
+Pipeline::Pipeline(Bus& bus, const PipelineOptions& options)
+    : bus_(bus),
+      decoder_(std::make_shared<FrameDecoder>(bus, options.camera)),
+      segmentation_(bus, decoder_, options.segmentation),
+      odometry_(bus, decoder_, options.odometry),
+      graph_(bus, options.graph),
+      map_(bus, options.map) {
+    if (options.with_octomap) octomap_ = std::make_unique<OctomapShell>(bus, decoder_, options.octomap);
+    bus_.subscribe(channels::kOdometry, [this](const RawMessage& message) {
+        estimates_.push_back(from_message(decode<odometry_t>(message.bytes)));
+    });
+}
+
+void Pipeline::finish() {
+    settle();
+    odometry_.finish();
+    settle();
+    map_.finish();
+    if (octomap_) octomap_->finish();
+    decoder_->clear();
+}
+
+Trajectory Pipeline::trajectory() const {
+    const KeyframeTrajectory& keyframes = graph_.graph().trajectory();
+    Trajectory trajectory;
+    for (const OdometryEstimate& estimate : estimates_) {
+        if (estimate.status == TrackingStatus::kLost) continue;
+        const auto keyframe =
+            std::lower_bound(keyframes.keyframes.begin(), keyframes.keyframes.end(), estimate.keyframe_id,
+                             [](const KeyframePose& pose, int id) { return pose.id < id; });
+        const bool known = keyframe != keyframes.keyframes.end() && keyframe->id == estimate.keyframe_id;
+        trajectory.push_back(
+            {estimate.pose_utime, known ? keyframe->world_from_camera * estimate.keyframe_from_camera
+                                        : keyframes.world_from_odom * estimate.odom_from_camera});
+    }
+    std::stable_sort(trajectory.begin(), trajectory.end(),
+                     [](const auto& a, const auto& b) { return a.utime < b.utime; });
+    return trajectory;
+}
+
+}  // namespace planemap

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/keyframe.hpp"
+#include "graph/graph_shell.hpp"
+#include "map/map_shell.hpp"
+#include "messages/bus.hpp"
+#include "messages/frame_decoder.hpp"
+#include "octomap/octomap_shell.hpp"
+#include "odometry/odometry_shell.hpp"
+#include "segmentation/segmentation_shell.hpp"
+
+namespace planemap {
+
+struct PipelineOptions {
+    SegmentationOptions segmentation;
+    OdometryOptions odometry;
+    GraphOptions graph;
+    MapShellOptions map;
+    OctomapOptions octomap;
+    bool with_octomap = true;
+    std::optional<CameraInfo> camera;  ///< instead of what the bus says
+};
+
+/// All shells on one bus in one process: the same ones that run as processes, fed one frame after the other.
+/// With a memq:// bus nothing is lost, and the same input and options give the same result.
+class Pipeline {
+  public:
+    Pipeline(Bus& bus, const PipelineOptions& options);
+
+    /// Handles what was published until the bus is quiet.
+    void settle() { bus_.drain(); }
+    /// Handles what the shells still hold back, and brings all maps up to date.
+    void finish();
+
+    /// The newest estimate; nothing before the first frame.
+    const OdometryEstimate* latest() const { return estimates_.empty() ? nullptr : &estimates_.back(); }
+    /// One for each frame that reached the odometry, in order.
+    const std::vector<OdometryEstimate>& estimates() const { return estimates_; }
+    /// World poses of all tracked frames after graph optimisation, at the moments that they are of.
+    Trajectory trajectory() const;
+
+    FrameDecoder& decoder() { return *decoder_; }
+    SegmentationShell& segmentation() { return segmentation_; }
+    OdometryShell& odometry() { return odometry_; }
+    GraphShell& graph() { return graph_; }
+    MapShell& map() { return map_; }
+    OctomapShell* octomap() { return octomap_.get(); }
+
+  private:
+    Bus& bus_;
+    std::shared_ptr<FrameDecoder> decoder_;
+    SegmentationShell segmentation_;
+    OdometryShell odometry_;
+    GraphShell graph_;
+    MapShell map_;
+    std::unique_ptr<OctomapShell> octomap_;
+    std::vector<OdometryEstimate> estimates_;
+};
+
+}  // namespace planemap

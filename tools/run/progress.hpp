@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+
+namespace planemap {
+
+class Input;
+class Pipeline;
+
+/// A line on stderr while the work goes on: frame, rate, planes, tracking state. On a terminal it is redrawn
+/// in place; elsewhere one line every few seconds.
+class Progress {
+  public:
+    explicit Progress(bool quiet);
+    void show(const Input& input, Pipeline& pipeline);
+    /// Ends the line that is redrawn.
+    void end();
+
+  private:
+    bool quiet_, terminal_, drawn_ = false;
+    std::chrono::steady_clock::time_point start_, last_;
+    std::int64_t last_frames_ = 0;
+};
+
+}  // namespace planemap

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// planemap-simulate: the simulator to an LCM log, with exact poses and planes beside it.
+#include <cstdio>
+#include <filesystem>
+
+#include "messages/channels.hpp"
+#include "messages/log.hpp"
+#include "messages/process.hpp"
+#include "sensor/sensor_shell.hpp"
+#include "sensor/simulator/simulator.hpp"
+
+namespace planemap {
+namespace {
+
+int simulate(const std::string& world, const std::filesystem::path& output,
+             const SensorShellOptions& options) {
+    catch_stop_signals();
+    if (!is_simulator_name(world))
+        throw std::invalid_argument(world + ": is no simulator name; try sim:office");
+    const std::filesystem::path folder = output.parent_path().empty() ? "." : output.parent_path();
+    std::filesystem::create_directories(folder);
+    Bus bus("memq://");
+    SensorShell sensor(bus, open_source(world), options);
+    // Beside and renamed: a log that bears its final name is whole.
+    const std::filesystem::path beside = output.string() + ".part";
+    LogWriter log(beside);
+    std::int64_t events = 0, bytes = 0, utime = 0;
+    bus.subscribe(".*", [&](const RawMessage& message) {
+        LogEvent event{
+            events++, utime, std::string(message.channel), {message.bytes.begin(), message.bytes.end()}};
+        bytes += static_cast<std::int64_t>(event.bytes.size());
+        log.write(event);
+    });
+    const auto total = sensor.source().size();
+    while (!stop_requested() && sensor.poll() >= 0) {
+        utime = sensor.last_utime();
+        bus.drain();
+        if (sensor.frames() % 100 == 0) {
+            std::fprintf(stderr, "planemap-simulate: frame %lld of %zu\n",
+                         static_cast<long long>(sensor.frames()), total.value_or(0));
+        }
+    }
+    log.close();
+    std::filesystem::rename(beside, output);
+    write_simulator_truth(world, folder);
+    std::printf("%s: %lld frames, %.1f MB; exact poses in %s, planes in %s\n", output.c_str(),
+                static_cast<long long>(sensor.frames()), static_cast<double>(bytes) / 1e6,
+                (folder / "groundtruth.txt").c_str(), (folder / "planes_truth.json").c_str());
+    return 0;
+}
+
+}  // namespace
+}  // namespace planemap
+
+int main(int argc, char** argv) {
+    CLI::App app(
+        "The simulator to an LCM log (OPENNI_FRAME with JPEG and zipped depth, PLANEMAP_CAMERA_INFO), with "
+        "the exact poses\n"
+        "(groundtruth.txt, TUM format) and planes (planes_truth.json) beside it.\n"
+        "Example: planemap-simulate --output office/office.lcmlog",
+        "planemap-simulate");
+    std::string world = "sim:office";
+    std::filesystem::path output;
+    planemap::SensorShellOptions options;
+    app.add_option("world", world, "Simulator name, e.g. sim:office?frames=300&seed=7")
+        ->capture_default_str();
+    app.add_option("-o,--output", output, "The log to write")->required();
+    add_flags(app, options);
+    const int parsed = planemap::parse_flags(app, argc, argv);
+    if (parsed >= 0) return parsed;
+    options.rate_hz = 0;
+    options.speed = 0;
+    planemap::start_logging("planemap-simulate", false);
+    return planemap::run_main("planemap-simulate",
+                              [&] { return planemap::simulate(world, output, options); });
+}
