@@ -24,18 +24,27 @@ struct TurboDeleter {
 using Turbo = std::unique_ptr<void, TurboDeleter>;
 
 /// One decompressor a thread: making one costs more than a small image.
-void* decompressor() {
-    thread_local Turbo handle(tjInitDecompress());
+Turbo& decompressor() {
+    thread_local Turbo handle;
+    if (!handle) handle.reset(tjInitDecompress());
     if (!handle) throw std::bad_alloc();
-    return handle.get();
+    return handle;
+}
+
+/// Throws with libjpeg-turbo's reason. The decompressor goes too: after a corrupt image it does not read the
+/// next one.
+[[noreturn]] void fail(Turbo& handle) {
+    const std::string reason = tjGetErrorStr2(handle.get());
+    handle.reset();
+    throw MessageError("JPEG: " + reason);
 }
 
 void decode_into(std::span<const std::uint8_t> jpeg, int width, int height, int pixel_format,
                  std::uint8_t* out) {
-    void* handle = decompressor();
+    Turbo& handle = decompressor();
     int w = 0, h = 0, subsampling = 0, colorspace = 0;
-    if (tjDecompressHeader3(handle, jpeg.data(), jpeg.size(), &w, &h, &subsampling, &colorspace) != 0) {
-        throw MessageError(std::string("JPEG: ") + tjGetErrorStr2(handle));
+    if (tjDecompressHeader3(handle.get(), jpeg.data(), jpeg.size(), &w, &h, &subsampling, &colorspace) != 0) {
+        fail(handle);
     }
     if (w != width || h != height) {
         throw MessageError("JPEG: the image is " + std::to_string(w) + "x" + std::to_string(h) +
@@ -44,8 +53,9 @@ void decode_into(std::span<const std::uint8_t> jpeg, int width, int height, int 
     // Accurate transforms, so that luma is the same whatever decodes it; a warning (cut short, corrupt) is an
     // error.
     const int flags = TJFLAG_ACCURATEDCT | TJFLAG_STOPONWARNING;
-    if (tjDecompress2(handle, jpeg.data(), jpeg.size(), out, width, 0, height, pixel_format, flags) != 0) {
-        throw MessageError(std::string("JPEG: ") + tjGetErrorStr2(handle));
+    if (tjDecompress2(handle.get(), jpeg.data(), jpeg.size(), out, width, 0, height, pixel_format, flags) !=
+        0) {
+        fail(handle);
     }
 }
 

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "messages/convert.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "messages/sample_messages.hpp"
+
+namespace planemap {
+namespace {
+
+using test::sample_keyframe;
+using test::sample_region;
+
+void expect_same(const PlanarRegion& a, const PlanarRegion& b) {
+    EXPECT_EQ(a.plane.normal, b.plane.normal);
+    EXPECT_EQ(a.plane.d, b.plane.d);
+    EXPECT_EQ(a.moments.count, b.moments.count);
+    EXPECT_EQ(a.moments.sum, b.moments.sum);
+    EXPECT_EQ(a.moments.scatter, b.moments.scatter);
+    EXPECT_TRUE(a.box.frame_from_box.isApprox(b.box.frame_from_box, 1e-12));
+    ASSERT_EQ(a.outline.rings.size(), b.outline.rings.size());
+    for (std::size_t i = 0; i < a.outline.rings.size(); ++i) {
+        ASSERT_EQ(a.outline.rings[i].size(), b.outline.rings[i].size());
+        for (std::size_t j = 0; j < a.outline.rings[i].size(); ++j) {
+            EXPECT_LT((a.outline.rings[i][j] - b.outline.rings[i][j]).norm(), 1e-6);
+        }
+    }
+}
+
+TEST(Convert, CameraRoundTrip) {
+    CameraInfo camera = test::sample_camera();
+    camera.registered = false;
+    camera.color_from_depth = make_pose({-0.025, 0, 0}, Eigen::Quaterniond::Identity());
+    camera.noise.quadratic_per_m = 0.003;
+    EXPECT_TRUE(from_message(to_message(camera, 1, 2)) == camera);
+}
+
+TEST(Convert, BadCameraNamesItsFields) {
+    camera_info_t message = to_message(test::sample_camera(), 1, 2);
+    message.depth.fx = 0;
+    message.color.width = -4;
+    message.depth_units_per_metre = std::numeric_limits<double>::quiet_NaN();
+    try {
+        from_message(message);
+        FAIL() << "accepted";
+    } catch (const MessageError& error) {
+        const std::string text = error.what();
+        EXPECT_NE(text.find("depth.fx"), std::string::npos) << text;
+        EXPECT_NE(text.find("color.width"), std::string::npos) << text;
+        EXPECT_NE(text.find("depth_units_per_metre"), std::string::npos) << text;
+    }
+}
+
+TEST(Convert, KeyframeRoundTrip) {
+    const Keyframe keyframe = sample_keyframe();
+    const Keyframe back = from_message(to_message(keyframe, 1));
+    EXPECT_EQ(back.id, keyframe.id);
+    EXPECT_EQ(back.previous_id, keyframe.previous_id);
+    EXPECT_EQ(back.pose_utime, keyframe.pose_utime);
+    EXPECT_TRUE(back.odom_from_camera.isApprox(keyframe.odom_from_camera, 1e-12));
+    EXPECT_EQ(back.covariance, keyframe.covariance);
+    ASSERT_EQ(back.features.size(), keyframe.features.size());
+    for (std::size_t i = 0; i < back.features.size(); ++i) {
+        EXPECT_EQ(back.features[i].pixel, keyframe.features[i].pixel);
+        EXPECT_EQ(back.features[i].point, keyframe.features[i].point);
+        EXPECT_EQ(back.features[i].region, keyframe.features[i].region);
+        EXPECT_EQ(back.features[i].descriptor, keyframe.features[i].descriptor);
+    }
+    ASSERT_EQ(back.regions.size(), 2u);
+    expect_same(back.regions[1], keyframe.regions[1]);
+}
+
+TEST(Convert, InconsistentMessagesAreErrors) {
+    const auto refused = [](auto spoil) {
+        keyframe_t message = to_message(sample_keyframe(), 1);
+        spoil(message);
+        EXPECT_THROW(from_message(message), MessageError);
+    };
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    refused([](keyframe_t& m) { m.id = -1; });
+    refused([](keyframe_t& m) { m.previous_id = m.id; });
+    refused([](keyframe_t& m) { m.regions_of[0] = 2; });
+    refused([](keyframe_t& m) { m.descriptors.pop_back(); });
+    refused([](keyframe_t& m) { m.odom_from_camera.rotation[0] = 7; });
+    refused([](keyframe_t& m) { m.odom_from_camera.translation[1] = kNan; });
+    refused([](keyframe_t& m) { m.covariance[7] = kNan; });
+    refused([](keyframe_t& m) { m.points[0][2] = std::numeric_limits<float>::infinity(); });
+    refused([](keyframe_t& m) { m.regions[0].normal[0] = 2; });
+    refused([](keyframe_t& m) { m.regions[0].count = kNan; });
+    refused([](keyframe_t& m) { m.regions[0].ring_sizes[0] = 99; });
+    refused([](keyframe_t& m) { m.regions[0].ring_sizes[0] = 2; });
+    refused([](keyframe_t& m) { m.regions[0].vertices[0][0] = std::nanf(""); });
+    refused([](keyframe_t& m) { m.regions[0].half_extents[0] = -1; });
+}
+
+TEST(Convert, TrajectoryRoundTripAndOrder) {
+    KeyframeTrajectory trajectory;
+    trajectory.revision = 4;
+    trajectory.loop_closures = 2;
+    trajectory.keyframes = {{0, 10, Pose::Identity()},
+                            {5, 20, make_pose({1, 0, 0}, Eigen::Quaterniond(1, 1, 0, 0))}};
+    const KeyframeTrajectory back = from_message(to_message(trajectory, 1));
+    ASSERT_EQ(back.keyframes.size(), 2u);
+    EXPECT_EQ(back.keyframes[1].id, 5);
+    EXPECT_TRUE(
+        back.keyframes[1].world_from_camera.isApprox(trajectory.keyframes[1].world_from_camera, 1e-12));
+    std::swap(trajectory.keyframes[0], trajectory.keyframes[1]);
+    EXPECT_THROW(from_message(to_message(trajectory, 1)), MessageError);
+}
+
+PlaneMap room_map(int vertices) {
+    PlaneMap map;
+    MapPlane& plane = map.planes.emplace_back();
+    plane.id = 7;
+    plane.label = PlaneLabel::kWall;
+    plane.keyframes = {1, 2, 3};
+    plane.region = sample_region();
+    plane.region = make_pose({12, -7, 3}, Eigen::Quaterniond(0.3, 0.5, -0.2, 0.7)) * plane.region;
+    Ring ring;
+    for (int i = 0; i < vertices; ++i) {
+        const double a = 2 * 3.14159265358979 * i / vertices;
+        ring.emplace_back(0.9 * std::cos(a), 0.4 * std::sin(a));
+    }
+    plane.region.outline.rings = {ring};
+    plane.area = 1.5;
+    return map;
+}
+
+TEST(Convert, MapPlaneTakesAtMost96BytesAnd4AVertex) {
+    PlaneMap empty;
+    const int base = to_message(empty, 1).getEncodedSize();
+    for (const int vertices : {3, 40, 400}) {
+        const int size = to_message(room_map(vertices), 1).getEncodedSize() - base;
+        EXPECT_LE(size, 96 + 4 * vertices);
+    }
+}
+
+TEST(Convert, MapComesBackWithinAMillimetre) {
+    const PlaneMap map = room_map(40);
+    const PlaneMap back = from_message(to_message(map, 1));
+    ASSERT_EQ(back.planes.size(), 1u);
+    const PlanarRegion &a = map.planes[0].region, &b = back.planes[0].region;
+    EXPECT_EQ(back.planes[0].label, PlaneLabel::kWall);
+    EXPECT_NEAR(back.planes[0].area, 1.5, 1e-6);
+    ASSERT_EQ(a.outline.rings[0].size(), b.outline.rings[0].size());
+    for (std::size_t i = 0; i < a.outline.rings[0].size(); ++i) {
+        const auto world = [](const PlanarRegion& r, const Eigen::Vector2d& v) -> Eigen::Vector3d {
+            return r.box.frame_from_box * Eigen::Vector3d(v.x(), v.y(), 0);
+        };
+        EXPECT_LT((world(a, a.outline.rings[0][i]) - world(b, b.outline.rings[0][i])).norm(), 0.001);
+    }
+    for (const Eigen::Vector3d& corner : a.box.corners())
+        EXPECT_LT(std::abs(b.plane.signed_distance(corner)), 1e-4);
+}
+
+TEST(Convert, MapReferencesMustExist) {
+    PlaneMap map = room_map(4);
+    map.lines.push_back({7, 8, {0, 0, 0}, {1, 1, 1}});
+    EXPECT_THROW(from_message(to_message(map, 1)), MessageError);
+}
+
+}  // namespace
+}  // namespace planemap

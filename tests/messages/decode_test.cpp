@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "messages/decode.hpp"
+
+#include <gtest/gtest.h>
+
+#include <kinect/frame_msg_t.hpp>
+#include <planemap/map_size_t.hpp>
+#include <planemap/module_status_t.hpp>
+#include <random>
+
+#include "messages/frame_decoder.hpp"
+#include "messages/sample_messages.hpp"
+
+namespace planemap {
+namespace {
+
+using test::encoded;
+
+bot_core::images_t sample_images() {
+    bot_core::images_t images;
+    images.utime = 5;
+    images.image_types = {bot_core::images_t::LEFT, bot_core::images_t::DEPTH_MM};
+    images.images = {color_image_message(RgbImage(8, 6), 4, ColorEncoding::kRaw, 90),
+                     depth_image_message(DepthImage(8, 6, 1000), 5, DepthEncoding::kRaw)};
+    set_seq(images.images.back(), 9);
+    images.n_images = 2;
+    return images;
+}
+
+PlaneMap sample_map() {
+    PlaneMap map;
+    MapPlane plane;
+    for (int id : {1, 4, 9}) {
+        plane.id = id;
+        plane.region = test::sample_region(0.1 * id);
+        plane.area = 1;
+        map.planes.push_back(plane);
+    }
+    map.lines.push_back({1, 4, {0, 0, 0}, {1, 0, 0}});
+    map.points.push_back({{1, 4, 9}, {0, 0, 1}});
+    return map;
+}
+
+KeyframeTrajectory sample_trajectory() {
+    KeyframeTrajectory trajectory;
+    for (int id = 0; id < 4; ++id) trajectory.keyframes.push_back({id, 100 * id, Pose::Identity()});
+    return trajectory;
+}
+
+kinect::frame_msg_t sample_kinect() {
+    kinect::frame_msg_t frame{};
+    frame.image.image_data_nbytes = 4;
+    frame.image.image_data = {1, 2, 3, 4};
+    frame.depth.depth_data_nbytes = 2;
+    frame.depth.depth_data = {5, 6};
+    return frame;
+}
+
+module_status_t sample_status() {
+    module_status_t status{};
+    status.module = "x";
+    status.text = "y";
+    return status;
+}
+
+/// Round trip, then every truncation, trailing bytes, every single corrupt byte set to hostile values, and
+/// random bytes: a message or MessageError, nothing else.
+template <typename T>
+void torment(const T& message) {
+    const std::vector<std::uint8_t> good = encoded(message);
+    ASSERT_EQ(encoded(decode<T>(good)), good) << T::getTypeName();
+
+    for (std::size_t length = 0; length < good.size(); ++length) {
+        EXPECT_THROW(decode<T>(std::span(good).first(length)), MessageError)
+            << T::getTypeName() << " cut to " << length;
+    }
+    std::vector<std::uint8_t> longer = good;
+    longer.push_back(0);
+    EXPECT_THROW(decode<T>(longer), MessageError) << T::getTypeName();
+
+    for (std::size_t i = 8; i < good.size(); ++i) {
+        for (const int hostile : {0x00, 0x7f, 0x80, 0xff}) {
+            std::vector<std::uint8_t> bad = good;
+            bad[i] = static_cast<std::uint8_t>(hostile);
+            try {
+                decode<T>(bad);
+            } catch (const MessageError&) {
+            }
+        }
+    }
+    std::mt19937_64 random(1);
+    for (int round = 0; round < 200; ++round) {
+        std::vector<std::uint8_t> noise(good.begin(), good.begin() + 8);
+        noise.resize(8 + random() % 300);
+        for (std::size_t i = 8; i < noise.size(); ++i) noise[i] = static_cast<std::uint8_t>(random());
+        try {
+            decode<T>(noise);
+        } catch (const MessageError&) {
+        }
+    }
+}
+
+TEST(Decode, SurvivesHostileBytes) {
+    torment(sample_images());
+    torment(to_message(test::sample_camera(), 1, 2));
+    torment(to_message(FrameRegions{7, {test::sample_region()}}, 3));
+    torment(to_message(OdometryEstimate(), 4));
+    torment(to_message(test::sample_keyframe(), 5));
+    torment(to_message(sample_trajectory(), 6));
+    torment(to_message(sample_map(), 7));
+    torment(sample_kinect());
+    torment(sample_status());
+    torment(map_size_t{});
+    torment(bot_core::pose_t{});
+}
+
+TEST(Decode, AnotherTypesFingerprintIsAnError) {
+    const auto bytes = encoded(to_message(OdometryEstimate(), 1));
+    EXPECT_NO_THROW(decode<odometry_t>(bytes));
+    EXPECT_THROW(decode<keyframe_t>(bytes), MessageError);
+}
+
+TEST(Decode, HugeLengthIsRefusedBeforeAllocation) {
+    std::vector<std::uint8_t> bytes = encoded(to_message(sample_trajectory(), 1));
+    const std::size_t at = 8 + 8 + 12 + 56;  // n_keyframes
+    bytes[at] = 0x1f;
+    bytes[at + 1] = bytes[at + 2] = bytes[at + 3] = 0xff;
+    try {
+        decode<trajectory_t>(bytes);
+        FAIL() << "accepted";
+    } catch (const MessageError& error) {
+        EXPECT_NE(std::string(error.what()).find("keyframes has 536870911 elements"), std::string::npos)
+            << error.what();
+    }
+}
+
+}  // namespace
+}  // namespace planemap

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "messages/module_status.hpp"
+
+#include <gtest/gtest.h>
+
+#include "messages/decode.hpp"
+
+namespace planemap {
+namespace {
+
+class Status : public testing::Test {
+  protected:
+    Status() {
+        bus_.subscribe("PLANEMAP_STATUS_GRAPH",
+                       [this](const RawMessage& m) { last_ = decode<module_status_t>(m.bytes); });
+    }
+    const module_status_t& at(std::int64_t second, bool stopped = false) {
+        status_.publish_if_due(bus_, second * 1000000, stopped);
+        bus_.drain();
+        return last_;
+    }
+    Bus bus_{"memq://"};
+    ModuleStatus status_{"graph"};
+    module_status_t last_{};
+};
+
+TEST_F(Status, CountsInputsGapsAndErrors) {
+    at(1);
+    for (const std::uint32_t seq : {0u, 1u, 4u, 5u}) {
+        const ModuleStatus::Work work(status_);
+        status_.received(seq);
+        status_.published();
+    }
+    const auto handler = status_.guard([](const RawMessage&) { throw MessageError("bad"); });
+    EXPECT_THROW(handler({}), MessageError);
+    const module_status_t& m = at(3);
+    EXPECT_EQ(m.module, "graph");
+    EXPECT_EQ(m.received, 4);
+    EXPECT_EQ(m.gaps, 2);
+    EXPECT_EQ(m.decode_errors, 1);
+    EXPECT_DOUBLE_EQ(m.rate_hz, 2.0);
+    EXPECT_EQ(m.state, module_status_t::RUNNING);
+    EXPECT_NE(status_.line().find("running: 2.0 Hz"), std::string::npos) << status_.line();
+}
+
+TEST_F(Status, StatesFollowTheWork) {
+    at(1);
+    EXPECT_EQ(at(2).state, module_status_t::WAITING);
+    status_.received();
+    EXPECT_EQ(at(3).state, module_status_t::FAILING);
+    status_.received();
+    status_.published();
+    EXPECT_EQ(at(4).state, module_status_t::RUNNING);
+    EXPECT_EQ(at(5).state, module_status_t::IDLE);
+    EXPECT_EQ(at(5, true).state, module_status_t::STOPPED);
+}
+
+TEST_F(Status, OnceASecond) {
+    EXPECT_FALSE(status_.publish_if_due(bus_, 1000000));
+    EXPECT_FALSE(status_.publish_if_due(bus_, 1900000));
+    EXPECT_TRUE(status_.publish_if_due(bus_, 2000000));
+}
+
+}  // namespace
+}  // namespace planemap

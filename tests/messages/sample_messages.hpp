@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Values and messages that the tests of this folder share.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "messages/convert.hpp"
+
+namespace planemap::test {
+
+inline PlanarRegion sample_region(double offset = 0) {
+    PlanarRegion region;
+    for (int i = 0; i < 20; ++i) {
+        for (int j = 0; j < 10; ++j) region.moments.add({0.1 * i - 1, 0.1 * j - 0.5, 2.0 + offset});
+    }
+    const PlaneFit fit = fit_plane(region.moments);
+    region.plane = fit.plane;
+    region.rms = fit.rms;
+    region.box.frame_from_box.linear() = principal_axes(fit.plane, region.moments);
+    region.box.frame_from_box.translation() = region.moments.mean();
+    region.box.half_extents = {0.95, 0.45, 0};
+    region.outline.rings = {{{-0.9, -0.4}, {0.9, -0.4}, {0.9, 0.4}, {-0.9, 0.4}},
+                            {{-0.1, -0.1}, {-0.1, 0.1}, {0.1, 0.1}}};
+    return region;
+}
+
+inline CameraInfo sample_camera(int width = 64, int height = 48) {
+    CameraInfo camera;
+    camera.serial = "test";
+    camera.depth = camera.color = {width, height, 50, 50, width / 2.0, height / 2.0};
+    return camera;
+}
+
+inline Keyframe sample_keyframe() {
+    Keyframe keyframe;
+    keyframe.utime = 1234567;
+    keyframe.pose_utime = 1234560;
+    keyframe.id = 3;
+    keyframe.previous_id = 2;
+    keyframe.odom_from_camera = make_pose({1, 2, 3}, Eigen::Quaterniond(0.9, 0.1, 0.2, 0.3));
+    keyframe.previous_from_camera = make_pose({0.1, 0, 0}, Eigen::Quaterniond(1, 0.01, 0, 0));
+    keyframe.covariance = Matrix6d::Identity() * 1e-4;
+    for (int i = 0; i < 5; ++i) {
+        Feature feature;
+        feature.pixel = {10.0f * static_cast<float>(i), 20};
+        feature.point = {0.1f, 0.2f, 1.0f + static_cast<float>(i)};
+        feature.region = i % 3 - 1;
+        feature.descriptor.fill(static_cast<std::uint8_t>(i));
+        keyframe.features.push_back(feature);
+    }
+    keyframe.regions = {sample_region(), sample_region(1)};
+    return keyframe;
+}
+
+template <typename T>
+std::vector<std::uint8_t> encoded(const T& message) {
+    std::vector<std::uint8_t> bytes(static_cast<std::size_t>(message.getEncodedSize()));
+    message.encode(bytes.data(), 0, message.getEncodedSize());
+    return bytes;
+}
+
+}  // namespace planemap::test
