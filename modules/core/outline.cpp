@@ -21,6 +21,17 @@ double distance_to_segment(const Eigen::Vector2d& p, const Eigen::Vector2d& a, c
     return (p - (a + s * ab)).norm();
 }
 
+/// Even-odd rule for one ring.
+bool contains(const Ring& ring, const Eigen::Vector2d& p) {
+    bool inside = false;
+    for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
+        const Eigen::Vector2d &a = ring[i], &b = ring[j];
+        if ((a.y() > p.y()) == (b.y() > p.y())) continue;
+        if (p.x() < (b.x() - a.x()) * (p.y() - a.y()) / (b.y() - a.y()) + a.x()) inside = !inside;
+    }
+    return inside;
+}
+
 /// Marks the vertices to keep between first and last (indices into a ring, last may wrap past its end).
 void douglas_peucker(const Ring& ring, std::size_t first, std::size_t last, double tolerance,
                      std::vector<bool>& keep) {
@@ -94,7 +105,7 @@ double area(const Outline& outline) {
         // The midpoint of an edge, so that rings that share a vertex do not confuse the test.
         const Eigen::Vector2d probe = 0.5 * (ring[0] + ring[1]);
         for (std::size_t j = 0; j < outline.rings.size(); ++j) {
-            if (j != i && contains(Outline{{outline.rings[j]}}, probe)) ++depth;
+            if (j != i && contains(outline.rings[j], probe)) ++depth;
         }
         total += (depth % 2 == 0 ? 1.0 : -1.0) * std::abs(signed_area(ring));
     }
@@ -103,13 +114,7 @@ double area(const Outline& outline) {
 
 bool contains(const Outline& outline, const Eigen::Vector2d& p) {
     bool inside = false;
-    for (const Ring& ring : outline.rings) {
-        for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
-            const Eigen::Vector2d &a = ring[i], &b = ring[j];
-            if ((a.y() > p.y()) == (b.y() > p.y())) continue;
-            if (p.x() < (b.x() - a.x()) * (p.y() - a.y()) / (b.y() - a.y()) + a.x()) inside = !inside;
-        }
-    }
+    for (const Ring& ring : outline.rings) inside ^= contains(ring, p);
     return inside;
 }
 
@@ -199,7 +204,8 @@ void fill(const Outline& outline, Mask& mask) {
             for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
                 const Eigen::Vector2d &a = ring[i], &b = ring[j];
                 if ((a.y() > centre) == (b.y() > centre)) continue;
-                crossings.push_back((b.x() - a.x()) * (centre - a.y()) / (b.y() - a.y()) + a.x());
+                const double crossing = (b.x() - a.x()) * (centre - a.y()) / (b.y() - a.y()) + a.x();
+                if (std::isfinite(crossing)) crossings.push_back(crossing);
             }
         }
         std::sort(crossings.begin(), crossings.end());

@@ -11,6 +11,12 @@
 
 namespace planemap {
 
+namespace {
+
+constexpr double kMaxSeconds = 9e12;  // microseconds fit 64 bits
+
+}  // namespace
+
 Trajectory read_trajectory(const std::filesystem::path& file) {
     std::istringstream in(read_file(file));
     Trajectory trajectory;
@@ -26,15 +32,19 @@ Trajectory read_trajectory(const std::filesystem::path& file) {
             fields >> text;
             char* end = nullptr;
             value = std::strtod(text.c_str(), &end);
-            if (text.empty() || *end != '\0' || !std::isfinite(value)) {
+            if (text.empty() || end != text.c_str() + text.size() || !std::isfinite(value)) {
                 throw std::runtime_error(file.string() + ":" + std::to_string(number) +
                                          ": expected eight finite numbers: timestamp tx ty tz qx qy qz qw");
             }
         }
         const Eigen::Quaterniond q(v[7], v[4], v[5], v[6]);
-        if (q.norm() < 1e-3) {
+        if (!(q.norm() > 1e-3 && q.norm() < 1e3)) {
             throw std::runtime_error(file.string() + ":" + std::to_string(number) +
-                                     ": the quaternion is zero");
+                                     ": the quaternion is not of unit length");
+        }
+        if (std::abs(v[0]) > kMaxSeconds) {
+            throw std::runtime_error(file.string() + ":" + std::to_string(number) +
+                                     ": the timestamp is beyond the range of microseconds in 64 bits");
         }
         trajectory.push_back({std::llround(v[0] * 1e6), make_pose({v[1], v[2], v[3]}, q)});
     }
@@ -50,11 +60,11 @@ void write_trajectory(const std::filesystem::path& file, const Trajectory& traje
         Eigen::Quaterniond q(pose.world_from_camera.linear());
         q.normalize();
         if (q.w() < 0) q.coeffs() = -q.coeffs();
-        char line[256];
-        std::snprintf(line, sizeof(line), "%lld.%06lld %.7f %.7f %.7f %.7f %.7f %.7f %.7f\n",
-                      static_cast<long long>(pose.utime / 1000000),
-                      static_cast<long long>(pose.utime % 1000000), t.x(), t.y(), t.z(), q.x(), q.y(), q.z(),
-                      q.w());
+        const std::int64_t seconds = pose.utime / 1000000, micros = std::abs(pose.utime % 1000000);
+        char line[4096];  // seven values of at most 318 characters each
+        std::snprintf(line, sizeof(line), "%s%lld.%06lld %.7f %.7f %.7f %.7f %.7f %.7f %.7f\n",
+                      pose.utime < 0 && seconds == 0 ? "-" : "", static_cast<long long>(seconds),
+                      static_cast<long long>(micros), t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w());
         text += line;
     }
     write_file(file, text);

@@ -13,8 +13,8 @@ using Trajectory = std::vector<StampedPose>;
 
 /// Reads a TUM trajectory: lines `timestamp tx ty tz qx qy qz qw` (seconds, world_from_camera, metres), #
 /// comments and blank lines skipped. Throws std::runtime_error naming file, line and reason for a file that
-/// cannot be read, a line with fewer than eight numbers, a non-finite value or a zero quaternion. The result
-/// is sorted by time.
+/// cannot be read, a line with fewer than eight numbers, a non-finite value, a quaternion far from
+/// unit length or a timestamp beyond 64 bits of microseconds. The result is sorted by time.
 Trajectory read_trajectory(const std::filesystem::path& file);
 
 /// Writes a TUM trajectory (timestamps with six decimals, values with seven, beside and renamed, so a reader

@@ -24,6 +24,6 @@ class GraphShell : public Shell {
 };
 
 /// Flags for the options, each named --<prefix>NAME.
-void add_flags(CLI::App& app, GraphOptions& options, const std::string& prefix = "");
+void add_flags(Flags& flags, GraphOptions& options, const std::string& prefix = "");
 
 }  // namespace planemap

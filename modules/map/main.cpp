@@ -4,8 +4,8 @@
 int main(int argc, char** argv) {
     planemap::Process process("map", "Keyframes' planar regions and the trajectory to the plane map.");
     planemap::MapShellOptions options;
-    process.flags().add_option("-o,--output", options.output,
-                               "Folder for plane_map.lcmlog; without it nothing is written");
+    process.flags().add("o,output", options.output,
+                        "Folder for plane_map.lcmlog; without it nothing is written");
     add_flags(process.flags(), options.map);
     return process.run(
         argc, argv, [&](planemap::Bus& bus) { return std::make_unique<planemap::MapShell>(bus, options); });

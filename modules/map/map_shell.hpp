@@ -45,6 +45,6 @@ class MapShell : public Shell {
 std::string plane_map_log(const PlaneMap& map);
 
 /// Flags for the options, each named --<prefix>NAME.
-void add_flags(CLI::App& app, MapOptions& options, const std::string& prefix = "");
+void add_flags(Flags& flags, MapOptions& options, const std::string& prefix = "");
 
 }  // namespace planemap

@@ -3,6 +3,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <cerrno>
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
@@ -94,7 +95,9 @@ void Bus::report(std::string_view channel, const char* reason) {
 }
 
 bool Bus::handle(int timeout_ms) {
+    errno = 0;
     const int result = lcm_->handleTimeout(timeout_ms);
+    if (result < 0 && errno == EINTR) return false;  // a signal, most likely the one that asks to stop
     if (result < 0) throw std::runtime_error("LCM URL '" + url_ + "': receiving failed");
     return result > 0;
 }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <map>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -430,15 +432,39 @@ MapPlane from_message(const map_plane_t& message) {
     return plane;
 }
 
-void copy3(const Eigen::Vector3d& from, float* to) {
-    for (int i = 0; i < 3; ++i) to[i] = static_cast<float>(from[i]);
+/// The line that two planes share, in the terms of map_line_t.
+struct SharedLine {
+    Eigen::Vector3d origin, direction;
+    bool valid = false;  ///< false for (nearly) parallel planes
+};
+
+SharedLine shared_line(const PlanarRegion& a, const PlanarRegion& b) {
+    SharedLine line;
+    const Eigen::Vector3d cross = a.plane.normal.cross(b.plane.normal);
+    const double sine = cross.norm();
+    if (sine < 1e-3) return line;
+    line.direction = cross / sine;
+    // From plane a's centre, within plane a and square to the line, to plane b.
+    const Eigen::Vector3d center = a.plane.project(a.box.frame_from_box.translation());
+    const Eigen::Vector3d across = line.direction.cross(a.plane.normal);
+    line.origin = center - across * (b.plane.signed_distance(center) / b.plane.normal.dot(across));
+    line.valid = line.origin.allFinite();
+    return line;
 }
 
-Eigen::Vector3d point_from(const float* from, const char* field) {
-    const Eigen::Vector3d p = Eigen::Vector3f(from).cast<double>();
-    require(p.allFinite(), field, "is not finite");
-    return p;
+/// The point that three planes share; nothing if they do not meet in one.
+std::optional<Eigen::Vector3d> shared_point(const Plane& a, const Plane& b, const Plane& c) {
+    Eigen::Matrix3d normals;
+    normals << a.normal.transpose(), b.normal.transpose(), c.normal.transpose();
+    if (std::abs(normals.determinant()) < 1e-4) return std::nullopt;
+    return Eigen::Vector3d(normals.inverse() * Eigen::Vector3d(-a.d, -b.d, -c.d));
 }
+
+/// Planes as the receiver will see them, and where each id is.
+struct SentPlanes {
+    std::vector<PlanarRegion> regions;
+    std::map<int, std::int16_t> index;
+};
 
 }  // namespace
 
@@ -447,20 +473,32 @@ plane_map_t to_message(const PlaneMap& map, std::int32_t seq) {
     message.utime = map.utime;
     message.seq = seq;
     message.revision = map.revision;
-    for (const MapPlane& plane : map.planes) message.planes.push_back(to_message(plane));
+    if (map.planes.size() > 32767) throw std::length_error("plane map: more than 32767 planes");
+    SentPlanes sent;
+    for (const MapPlane& plane : map.planes) {
+        sent.index[plane.id] = static_cast<std::int16_t>(message.planes.size());
+        message.planes.push_back(to_message(plane));
+        sent.regions.push_back(from_message(message.planes.back()).region);
+    }
     message.n_planes = count32(message.planes.size());
+    const auto region = [&](int id) -> const PlanarRegion& {
+        return sent.regions[static_cast<std::size_t>(sent.index.at(id))];
+    };
     for (const IntersectionLine& line : map.lines) {
+        const SharedLine shared = shared_line(region(line.plane_a), region(line.plane_b));
+        if (!shared.valid) continue;
         map_line_t& m = message.lines.emplace_back();
-        m.plane_a = line.plane_a;
-        m.plane_b = line.plane_b;
-        copy3(line.from, m.from);
-        copy3(line.to, m.to);
+        m.plane_a = sent.index.at(line.plane_a);
+        m.plane_b = sent.index.at(line.plane_b);
+        m.from = static_cast<float>((line.from - shared.origin).dot(shared.direction));
+        m.to = static_cast<float>((line.to - shared.origin).dot(shared.direction));
     }
     message.n_lines = count32(message.lines.size());
     for (const IntersectionPoint& point : map.points) {
+        const auto& [a, b, c] = point.planes;
+        if (!shared_point(region(a).plane, region(b).plane, region(c).plane)) continue;
         map_point_t& m = message.points.emplace_back();
-        std::copy(point.planes.begin(), point.planes.end(), m.planes);
-        copy3(point.position, m.position);
+        for (std::size_t i = 0; i < 3; ++i) m.planes[i] = sent.index.at(point.planes[i]);
     }
     message.n_points = count32(message.points.size());
     return message;
@@ -474,21 +512,26 @@ PlaneMap from_message(const plane_map_t& message) {
         require(map.planes.empty() || plane.id > map.planes.back().id, "plane.id", "does not ascend");
         map.planes.push_back(from_message(plane));
     }
-    const auto known = [&](int id) {
-        return std::any_of(map.planes.begin(), map.planes.end(),
-                           [&](const MapPlane& plane) { return plane.id == id; });
+    const auto plane_at = [&](std::int16_t index, const char* field) -> const MapPlane& {
+        require(index >= 0 && index < message.n_planes, field, "is not a plane of the map");
+        return map.planes[static_cast<std::size_t>(index)];
     };
     for (const map_line_t& line : message.lines) {
-        require(known(line.plane_a) && known(line.plane_b), "line.plane", "is not a plane of the map");
-        map.lines.push_back(
-            {line.plane_a, line.plane_b, point_from(line.from, "line.from"), point_from(line.to, "line.to")});
+        const MapPlane &a = plane_at(line.plane_a, "line.plane_a"),
+                       &b = plane_at(line.plane_b, "line.plane_b");
+        const SharedLine shared = shared_line(a.region, b.region);
+        require(shared.valid, "line", "joins parallel planes");
+        require(std::isfinite(line.from) && std::isfinite(line.to), "line", "has an end that is not finite");
+        map.lines.push_back({a.id, b.id, shared.origin + static_cast<double>(line.from) * shared.direction,
+                             shared.origin + static_cast<double>(line.to) * shared.direction});
     }
     for (const map_point_t& point : message.points) {
-        IntersectionPoint& p = map.points.emplace_back();
-        std::copy(point.planes, point.planes + 3, p.planes.begin());
-        require(std::all_of(p.planes.begin(), p.planes.end(), known), "point.planes",
-                "is not a plane of the map");
-        p.position = point_from(point.position, "point.position");
+        const MapPlane &a = plane_at(point.planes[0], "point.planes"),
+                       &b = plane_at(point.planes[1], "point.planes"),
+                       &c = plane_at(point.planes[2], "point.planes");
+        const auto position = shared_point(a.region.plane, b.region.plane, c.region.plane);
+        require(position.has_value(), "point", "joins planes that do not meet in one point");
+        map.points.push_back({{a.id, b.id, c.id}, *position});
     }
     return map;
 }

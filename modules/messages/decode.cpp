@@ -150,8 +150,8 @@ void walk(Walker& w, const plane_map_t*) {
         w.array(w.length("plane.n_rings", 2), 2, "plane.ring_sizes");
         w.array(w.length("plane.n_vertices"), 4, "plane.vertices");
     }
-    w.array(w.length("n_lines"), 8 + 24, "lines");
-    w.array(w.length("n_points"), 12 + 12, "points");
+    w.array(w.length("n_lines"), 4 + 8, "lines");
+    w.array(w.length("n_points"), 6, "points");
 }
 void walk(Walker& w, const map_size_t*) {
     w.skip(8 + 4 + 8 * 6 + 8, "sizes");

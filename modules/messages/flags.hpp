@@ -1,31 +1,58 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace planemap {
 
-/// Adds the fields of an options struct as flags, each named --<prefix>NAME, with its default shown in
-/// --help.
-///   FlagAdder add(app, "segmentation-", "Segmentation");
-///   add("min-inliers", options.min_inliers, "smallest region, points");
-class FlagAdder {
+/// A program's command line. Flags write straight into the fields they are given, show their defaults in
+/// --help, and may also come from a file (--config). CLI11 does the work and stays hidden here: its header
+/// takes seconds to compile.
+class Flags {
   public:
-    /// group: heading in --help.
-    FlagAdder(CLI::App& app, std::string prefix, std::string group)
-        : app_(app), prefix_(std::move(prefix)), group_(std::move(group)) {}
+    Flags(const std::string& program, const std::string& description);
+    ~Flags();
+    Flags(const Flags&) = delete;
+    Flags& operator=(const Flags&) = delete;
 
-    template <typename T>
-    CLI::Option* operator()(const std::string& name, T& field, const std::string& description) {
-        return app_.add_option("--" + prefix_ + name, field, description)
-            ->capture_default_str()
-            ->group(group_);
-    }
+    /// From here on: the heading in --help, and what leads each flag's name.
+    ///   flags.section("Segmentation", "segmentation-");
+    ///   flags.add("min-inliers", options.min_inliers, "smallest region, points");   //
+    ///   --segmentation-min-inliers
+    void section(const std::string& heading, const std::string& prefix = "");
+
+    /// A flag with a value. Short forms stand before the name: "o,output".
+    void add(const std::string& name, double& field, const std::string& description);
+    void add(const std::string& name, int& field, const std::string& description);
+    void add(const std::string& name, std::uint64_t& field, const std::string& description);
+    void add(const std::string& name, std::string& field, const std::string& description);
+    void add(const std::string& name, std::filesystem::path& field, const std::string& description);
+    void add(const std::string& name, std::optional<double>& field, const std::string& description);
+    void add(const std::string& name, std::optional<std::uint64_t>& field, const std::string& description);
+    /// A flag without a value: sets the field to true.
+    void add(const std::string& name, bool& field, const std::string& description);
+    /// One word of a list; the list's first is the default in --help.
+    void add_choice(const std::string& name, std::string& field, const std::vector<std::string>& words,
+                    const std::string& description);
+    /// The last added flag must be given.
+    void required();
+    /// An argument without a name.
+    void add_positional(const std::string& name, std::string& field, const std::string& description,
+                        bool required = true);
+
+    /// Returns -1 to go on, or the exit code: 0 after --help, 2 for wrong flags (said in one line on stderr).
+    int parse(int argc, const char* const* argv);
 
   private:
-    CLI::App& app_;
-    std::string prefix_, group_;
+    class Impl;
+    std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace planemap

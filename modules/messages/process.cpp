@@ -66,18 +66,6 @@ void start_logging(const std::string& program, bool verbose) {
     spdlog::set_default_logger(logger);
 }
 
-int parse_flags(CLI::App& app, int argc, char** argv) {
-    try {
-        app.parse(argc, argv);
-        return -1;
-    } catch (const CLI::Success& success) {
-        return app.exit(success);
-    } catch (const CLI::ParseError& error) {
-        std::fprintf(stderr, "%s: %s (see --help)\n", app.get_name().c_str(), error.what());
-        return 2;
-    }
-}
-
 int run_main(const std::string& program, const std::function<int()>& body) {
     try {
         return body();
@@ -88,16 +76,14 @@ int run_main(const std::string& program, const std::function<int()>& body) {
 }
 
 Process::Process(std::string module, const std::string& description)
-    : module_(std::move(module)), program_("planemap-" + module_), app_(description, program_) {
-    app_.add_option("-l,--lcm-url", lcm_url_,
-                    "LCM URL; default: LCM_DEFAULT_URL, else udpm on this machine only (ttl=0)");
-    app_.set_config("--config", "", "Read flags from an INI or TOML file: one `name = value` a line");
-    app_.allow_config_extras(CLI::config_extras_mode::error);
-    app_.add_flag("-v,--verbose", verbose_, "Log more");
+    : module_(std::move(module)), program_("planemap-" + module_), flags_(program_, description) {
+    flags_.add("l,lcm-url", lcm_url_,
+               "LCM URL; default: LCM_DEFAULT_URL, else udpm on this machine only (ttl=0)");
+    flags_.add("v,verbose", verbose_, "Log more");
 }
 
 int Process::run(int argc, char** argv, const std::function<std::unique_ptr<Shell>(Bus&)>& make_shell) {
-    const int parsed = parse_flags(app_, argc, argv);
+    const int parsed = flags_.parse(argc, argv);
     if (parsed >= 0) return parsed;
     return run_main(program_, [&] {
         start_logging(program_, verbose_);

@@ -2,12 +2,12 @@
 // What every planemap process does alike: flags, a bus, status once a second, a clean stop.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <memory>
 #include <string>
 
 #include "messages/bus.hpp"
+#include "messages/flags.hpp"
 #include "messages/module_status.hpp"
 
 namespace planemap {
@@ -32,10 +32,6 @@ void catch_stop_signals();
 /// Logging as all programs do it: to stderr, a line an entry, the program's name first.
 void start_logging(const std::string& program, bool verbose);
 
-/// Parses flags into `app`. Returns -1 to go on, or the exit code: 0 after --help, 2 for wrong flags (one
-/// line on stderr).
-int parse_flags(CLI::App& app, int argc, char** argv);
-
 /// Runs body, and turns an exception that reaches the top into one line on stderr and exit code 1.
 int run_main(const std::string& program, const std::function<int()>& body);
 
@@ -45,14 +41,14 @@ class Process {
     Process(std::string module, const std::string& description);
 
     /// For the module's own flags.
-    CLI::App& flags() { return app_; }
+    Flags& flags() { return flags_; }
     /// Parses flags, opens the bus, makes the shell and runs it until it is done or a signal comes.
     /// Returns the exit code: 0 after a clean stop, 1 for an error (one line on stderr), 2 for wrong flags.
     int run(int argc, char** argv, const std::function<std::unique_ptr<Shell>(Bus&)>& make_shell);
 
   private:
     std::string module_, program_;
-    CLI::App app_;
+    Flags flags_;
     std::string lcm_url_;
     bool verbose_ = false;
 };

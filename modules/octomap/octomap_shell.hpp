@@ -49,6 +49,6 @@ class OctomapShell : public Shell {
 };
 
 /// Flags for the options, each named --<prefix>NAME.
-void add_flags(CLI::App& app, OctomapOptions& options, const std::string& prefix = "");
+void add_flags(Flags& flags, OctomapOptions& options, const std::string& prefix = "");
 
 }  // namespace planemap

@@ -46,6 +46,6 @@ class OdometryShell : public Shell {
 };
 
 /// Flags for the options, each named --<prefix>NAME.
-void add_flags(CLI::App& app, OdometryOptions& options, const std::string& prefix = "");
+void add_flags(Flags& flags, OdometryOptions& options, const std::string& prefix = "");
 
 }  // namespace planemap

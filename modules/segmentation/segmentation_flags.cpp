@@ -1,49 +1,51 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "messages/flags.hpp"
 #include "segmentation/segmentation_shell.hpp"
 
 namespace planemap {
 
-void add_flags(CLI::App& app, SegmentationOptions& options, const std::string& prefix) {
-    FlagAdder add(app, prefix, "Segmentation");
-    add("method", options.method, "'cells', or 'ransac' for the paper's method");
-    add("seed", options.seed, "of the random samples of 'ransac'");
-    add("cells-cell-fraction", options.cells.cell_fraction, "side of a cell as a share of the image's width");
-    add("cells-min-region-fraction", options.cells.min_region_fraction,
-        "smallest region as a share of the image's pixels");
-    add("cells-min-fill", options.cells.min_fill, "share of a cell's pixels that must be valid for a fit");
-    add("cells-planarity-sigmas", options.cells.planarity_sigmas, "largest RMS of a planar cell");
-    add("cells-step-m", options.cells.step_m, "largest step between neighbouring cells of one plane, metres");
-    add("cells-step-sigmas", options.cells.step_sigmas,
-        "largest step between neighbouring cells of one plane, metres");
-    add("cells-grow-m", options.cells.grow_m,
-        "largest mean distance of a cell to its region's plane, metres");
-    add("cells-grow-sigmas", options.cells.grow_sigmas,
-        "largest mean distance of a cell to its region's plane, metres");
-    add("cells-grow-angle-deg", options.cells.grow_angle_deg,
-        "largest angle between cell and region, beyond the cell's own error");
-    add("cells-merge-m", options.cells.merge_m,
-        "largest RMS of either of two regions to their common plane, metres");
-    add("cells-merge-sigmas", options.cells.merge_sigmas,
-        "largest RMS of either of two regions to their common plane, metres");
-    add("cells-merge-angle-deg", options.cells.merge_angle_deg,
-        "largest angle between two regions to be merged");
-    add("cells-bend-deg", options.cells.bend_deg,
-        "a region that turns by more from end to end is curved: no plane");
-    add("cells-thickness-m", options.cells.thickness_m,
-        "largest distance of a pixel to its region's plane, metres");
-    add("cells-thickness-sigmas", options.cells.thickness_sigmas,
-        "largest distance of a pixel to its region's plane, metres");
-    add("ransac-thickness-m", options.ransac.thickness_m,
-        "largest distance of an inlier to its plane, metres");
-    add("ransac-min-inliers", options.ransac.min_inliers,
-        "smallest region, counted in subsampled points as the paper does");
-    add("ransac-max-planes", options.ransac.max_planes, "regions per frame; the paper's k");
-    add("ransac-subsampling", options.ransac.subsampling,
-        "every n-th row and column is used: 1 to 16 (the paper: 1, 2, 4)");
-    add("ransac-max-iterations", options.ransac.max_iterations, "RANSAC trials per plane");
-    add("ransac-probability", options.ransac.probability,
-        "stop early when a sample without outliers was drawn this probably");
+void add_flags(Flags& flags, SegmentationOptions& options, const std::string& prefix) {
+    flags.section("Segmentation", prefix);
+    flags.add("method", options.method, "'cells', or 'ransac' for the paper's method");
+    flags.add("seed", options.seed, "of the random samples of 'ransac'");
+    flags.add("cells-cell-fraction", options.cells.cell_fraction,
+              "side of a cell as a share of the image's width");
+    flags.add("cells-min-region-fraction", options.cells.min_region_fraction,
+              "smallest region as a share of the image's pixels");
+    flags.add("cells-min-fill", options.cells.min_fill,
+              "share of a cell's pixels that must be valid for a fit");
+    flags.add("cells-planarity-sigmas", options.cells.planarity_sigmas, "largest RMS of a planar cell");
+    flags.add("cells-step-m", options.cells.step_m,
+              "largest step between neighbouring cells of one plane, metres");
+    flags.add("cells-step-sigmas", options.cells.step_sigmas,
+              "largest step between neighbouring cells of one plane, metres");
+    flags.add("cells-grow-m", options.cells.grow_m,
+              "largest mean distance of a cell to its region's plane, metres");
+    flags.add("cells-grow-sigmas", options.cells.grow_sigmas,
+              "largest mean distance of a cell to its region's plane, metres");
+    flags.add("cells-grow-angle-deg", options.cells.grow_angle_deg,
+              "largest angle between cell and region, beyond the cell's own error");
+    flags.add("cells-merge-m", options.cells.merge_m,
+              "by how much two regions may leave their common plane (RMS), metres");
+    flags.add("cells-merge-sigmas", options.cells.merge_sigmas,
+              "by how much two regions may leave their common plane (RMS), metres");
+    flags.add("cells-merge-angle-deg", options.cells.merge_angle_deg,
+              "largest angle between two regions to be merged");
+    flags.add("cells-bend-deg", options.cells.bend_deg,
+              "a region that turns by more from end to end is curved: no plane");
+    flags.add("cells-thickness-m", options.cells.thickness_m,
+              "largest distance of a pixel to its region's plane, metres");
+    flags.add("cells-thickness-sigmas", options.cells.thickness_sigmas,
+              "largest distance of a pixel to its region's plane, metres");
+    flags.add("ransac-thickness-m", options.ransac.thickness_m,
+              "largest distance of an inlier to its plane, metres");
+    flags.add("ransac-min-inliers", options.ransac.min_inliers,
+              "smallest region, counted in subsampled points as the paper does");
+    flags.add("ransac-max-planes", options.ransac.max_planes, "regions per frame; the paper's k");
+    flags.add("ransac-subsampling", options.ransac.subsampling,
+              "every n-th row and column is used: 1 to 16 (the paper: 1, 2, 4)");
+    flags.add("ransac-max-iterations", options.ransac.max_iterations, "RANSAC trials per plane");
+    flags.add("ransac-probability", options.ransac.probability,
+              "stop early when a sample without outliers was drawn this probably");
 }
 
 }  // namespace planemap

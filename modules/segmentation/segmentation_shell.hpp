@@ -29,6 +29,6 @@ class SegmentationShell : public Shell {
 };
 
 /// Flags for the options, each named --<prefix>NAME.
-void add_flags(CLI::App& app, SegmentationOptions& options, const std::string& prefix = "");
+void add_flags(Flags& flags, SegmentationOptions& options, const std::string& prefix = "");
 
 }  // namespace planemap

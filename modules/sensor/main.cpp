@@ -7,10 +7,9 @@ int main(int argc, char** argv) {
     std::string input;
     planemap::SensorShellOptions options;
     planemap::SourceOptions source;
-    process.flags()
-        .add_option("input", input, "TUM-layout folder, or sim:office[?frames=N&seed=N...]")
-        ->required();
-    add_flags(process.flags(), options);
+    process.flags().add_positional("input", input, "TUM-layout folder, or sim:office[?frames=N&seed=N...]");
+    add_pacing_flags(process.flags(), options);
+    add_encoding_flags(process.flags(), options);
     return process.run(argc, argv, [&](planemap::Bus& bus) {
         return std::make_unique<planemap::SensorShell>(bus, planemap::open_source(input, source), options);
     });

@@ -20,6 +20,8 @@ void SensorShellOptions::validate() const {
     FieldErrors errors("sensor");
     errors.require(std::isfinite(rate_hz) && rate_hz >= 0 && rate_hz <= 1000, "rate", rate_hz, "0 to 1000");
     errors.require(std::isfinite(speed) && speed >= 0 && speed <= 1000, "speed", speed, "0 to 1000");
+    errors.require(color == "jpeg" || color == "raw", "color", color, "jpeg or raw");
+    errors.require(depth == "zipped" || depth == "raw", "depth", depth, "zipped or raw");
     errors.require(jpeg_quality >= 1 && jpeg_quality <= 100, "jpeg-quality", jpeg_quality, "1 to 100");
     errors.throw_if_any();
 }
@@ -88,13 +90,15 @@ void SensorShell::publish(const SensorFrame& frame) {
             jpeg_image_message(frame.color_jpeg, camera.color.width, camera.color.height, frame.color_utime));
     } else if (!frame.color.empty()) {
         images.image_types.push_back(bot_core::images_t::LEFT);
-        images.images.push_back(
-            color_image_message(frame.color, frame.color_utime, options_.color, options_.jpeg_quality));
+        images.images.push_back(color_image_message(
+            frame.color, frame.color_utime,
+            options_.color == "jpeg" ? ColorEncoding::kJpeg : ColorEncoding::kRaw, options_.jpeg_quality));
     }
-    const bool zipped = options_.depth == DepthEncoding::kZipped;
+    const bool zipped = options_.depth == "zipped";
     images.image_types.push_back(zipped ? std::int16_t{bot_core::images_t::DEPTH_MM_ZIPPED}
                                         : std::int16_t{bot_core::images_t::DEPTH_MM});
-    images.images.push_back(depth_image_message(frame.depth, frame.utime, options_.depth));
+    images.images.push_back(
+        depth_image_message(frame.depth, frame.utime, zipped ? DepthEncoding::kZipped : DepthEncoding::kRaw));
     set_seq(images.images.back(), static_cast<std::uint32_t>(frames_));
     images.n_images = static_cast<std::int32_t>(images.images.size());
     bus_.publish(channels::kFrame, images);
@@ -103,18 +107,16 @@ void SensorShell::publish(const SensorFrame& frame) {
     status_.published();
 }
 
-void add_flags(CLI::App& app, SensorShellOptions& options) {
-    app.add_option("--rate", options.rate_hz, "Frames a second, whatever the timestamps say; 0: as recorded")
-        ->capture_default_str();
-    app.add_option("--speed", options.speed, "Times the recorded speed; 0: as fast as possible")
-        ->capture_default_str();
-    app.add_option("--color", options.color, "Colour pixels are sent as: jpeg or raw")
-        ->transform(CLI::CheckedTransformer(std::map<std::string, ColorEncoding>{
-            {"jpeg", ColorEncoding::kJpeg}, {"raw", ColorEncoding::kRaw}}));
-    app.add_option("--depth", options.depth, "Depth is sent as: zipped or raw")
-        ->transform(CLI::CheckedTransformer(std::map<std::string, DepthEncoding>{
-            {"zipped", DepthEncoding::kZipped}, {"raw", DepthEncoding::kRaw}}));
-    app.add_option("--jpeg-quality", options.jpeg_quality, "1 to 100")->capture_default_str();
+void add_pacing_flags(Flags& flags, SensorShellOptions& options) {
+    flags.add("rate", options.rate_hz, "Frames a second, whatever the timestamps say; 0: as recorded");
+    flags.add("speed", options.speed, "Times the recorded speed; 0: as fast as possible");
+}
+
+void add_encoding_flags(Flags& flags, SensorShellOptions& options) {
+    flags.add_choice("color", options.color, {"jpeg", "raw"},
+                     "How colour pixels are sent; a stored JPEG goes as it is");
+    flags.add_choice("depth", options.depth, {"zipped", "raw"}, "How depth is sent");
+    flags.add("jpeg-quality", options.jpeg_quality, "1 to 100");
 }
 
 }  // namespace planemap

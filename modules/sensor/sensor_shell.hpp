@@ -10,10 +10,10 @@
 namespace planemap {
 
 struct SensorShellOptions {
-    double rate_hz = 0;  ///< frames a second whatever the timestamps say; 0: by the timestamps
-    double speed = 1;    ///< times the recorded speed; 0: as fast as the consumer takes them
-    ColorEncoding color = ColorEncoding::kJpeg;  ///< of colour pixels; a stored JPEG is passed on as it is
-    DepthEncoding depth = DepthEncoding::kZipped;
+    double rate_hz = 0;          ///< frames a second whatever the timestamps say; 0: by the timestamps
+    double speed = 1;            ///< times the recorded speed; 0: as fast as the consumer takes them
+    std::string color = "jpeg";  ///< "jpeg" or "raw": how colour pixels are sent; a stored JPEG goes as it is
+    std::string depth = "zipped";  ///< "zipped" or "raw": how depth is sent
     int jpeg_quality = 94;
 
     /// Throws std::invalid_argument that names every bad field.
@@ -54,7 +54,9 @@ class SensorShell : public Shell {
     std::int32_t camera_seq_ = 0;
 };
 
-/// --rate, --speed, --color, --depth, --jpeg-quality.
-void add_flags(CLI::App& app, SensorShellOptions& options);
+/// --rate, --speed.
+void add_pacing_flags(Flags& flags, SensorShellOptions& options);
+/// --color, --depth, --jpeg-quality.
+void add_encoding_flags(Flags& flags, SensorShellOptions& options);
 
 }  // namespace planemap

@@ -156,10 +156,58 @@ TEST(Convert, MapComesBackWithinAMillimetre) {
         EXPECT_LT(std::abs(b.plane.signed_distance(corner)), 1e-4);
 }
 
+TEST(Convert, IntersectionsComeBack) {
+    PlaneMap map;
+    const Eigen::Vector3d corner(11, -4, 2.5);
+    const Eigen::Vector3d normals[] = {{1, 0.1, 0}, {-0.2, 1, 0.1}, {0, 0.05, 1}};
+    for (int id = 0; id < 3; ++id) {
+        MapPlane& plane = map.planes.emplace_back();
+        plane.id = 5 * id + 2;
+        plane.region = sample_region();
+        plane.region.plane.normal = normals[id].normalized();
+        plane.region.plane.d = -plane.region.plane.normal.dot(corner);
+        plane.region.box.frame_from_box.linear() =
+            plane_axes(plane.region.plane.normal, Eigen::Vector3d(1, 1, 1));
+        plane.region.box.frame_from_box.translation() =
+            corner + plane.region.box.frame_from_box.linear() * Eigen::Vector3d(1.5, 0.7, 0);
+    }
+    const Eigen::Vector3d along =
+        map.planes[0].region.plane.normal.cross(map.planes[1].region.plane.normal).normalized();
+    map.lines.push_back({2, 7, corner - 0.3 * along, corner + 2 * along});
+    map.points.push_back({{2, 7, 12}, corner});
+    const PlaneMap back = from_message(to_message(map, 1));
+    ASSERT_EQ(back.lines.size(), 1u);
+    EXPECT_EQ(back.lines[0].plane_b, 7);
+    EXPECT_LT((back.lines[0].from - map.lines[0].from).norm(), 1e-4);
+    EXPECT_LT((back.lines[0].to - map.lines[0].to).norm(), 1e-4);
+    ASSERT_EQ(back.points.size(), 1u);
+    EXPECT_EQ(back.points[0].planes, map.points[0].planes);
+    EXPECT_LT((back.points[0].position - corner).norm(), 1e-4);
+}
+
 TEST(Convert, MapReferencesMustExist) {
-    PlaneMap map = room_map(4);
-    map.lines.push_back({7, 8, {0, 0, 0}, {1, 1, 1}});
-    EXPECT_THROW(from_message(to_message(map, 1)), MessageError);
+    const auto refused = [](auto spoil) {
+        plane_map_t message = to_message(room_map(4), 1);
+        spoil(message);
+        EXPECT_THROW(from_message(message), MessageError);
+    };
+    refused([](plane_map_t& m) {
+        m.n_lines = 1;
+        m.lines.resize(1);
+        m.lines[0].plane_a = 0;
+        m.lines[0].plane_b = 1;
+    });
+    refused([](plane_map_t& m) {
+        m.n_lines = 1;
+        m.lines.resize(1);
+        m.lines[0].plane_a = m.lines[0].plane_b = 0;
+    });
+    refused([](plane_map_t& m) {
+        m.n_points = 1;
+        m.points.resize(1);
+        m.points[0].planes[0] = m.points[0].planes[1] = 0;
+        m.points[0].planes[2] = -1;
+    });
 }
 
 }  // namespace

@@ -32,7 +32,8 @@ PlaneMap sample_map() {
     MapPlane plane;
     for (int id : {1, 4, 9}) {
         plane.id = id;
-        plane.region = test::sample_region(0.1 * id);
+        plane.region =
+            make_pose({0, 0, 0}, Eigen::Quaterniond(1, 0.1 * id, 0.03 * id * id, 0)) * test::sample_region();
         plane.area = 1;
         map.planes.push_back(plane);
     }

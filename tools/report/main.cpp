@@ -9,16 +9,16 @@
 #include "run/report.hpp"
 
 int main(int argc, char** argv) {
-    CLI::App app(
-        "Prints the report of a run: what the plane map takes beside an OctoMap, clouds and voxels of the "
-        "same run, and at\n"
-        "what coverage. Reads report.json of planemap-run's output folder and writes report.md beside it "
-        "anew.",
-        "planemap-report");
-    std::filesystem::path folder;
-    app.add_option("folder", folder, "Output folder of planemap-run")->required();
-    const int parsed = planemap::parse_flags(app, argc, argv);
+    planemap::Flags flags("planemap-report",
+                          "Prints the report of a run: what the plane map takes beside an OctoMap, clouds "
+                          "and voxels of the same run, and at\n"
+                          "what coverage. Reads report.json of planemap-run's output folder and writes "
+                          "report.md beside it anew.");
+    std::string folder_name;
+    flags.add_positional("folder", folder_name, "Output folder of planemap-run");
+    const int parsed = flags.parse(argc, argv);
     if (parsed >= 0) return parsed;
+    const std::filesystem::path folder = folder_name;
     return planemap::run_main("planemap-report", [&] {
         const std::filesystem::path file = folder / "report.json";
         nlohmann::ordered_json report;

@@ -9,6 +9,7 @@
 #include "messages/channels.hpp"
 #include "messages/log.hpp"
 #include "sensor/sensor_shell.hpp"
+#include "sensor/simulator/simulated_source.hpp"
 
 namespace planemap {
 
@@ -18,7 +19,8 @@ namespace {
 /// them twice.
 class SensorInput : public Input {
   public:
-    SensorInput(const std::string& name, Bus& bus) : shell_(bus, open_source(name), in_process()) {}
+    SensorInput(const std::string& name, Bus& bus)
+        : folder_(name), shell_(bus, open_source(name), in_process()) {}
 
     bool feed() override { return shell_.poll() >= 0; }
     std::int64_t frames() const override { return shell_.frames() + shell_.broken(); }
@@ -36,14 +38,29 @@ class SensorInput : public Input {
         return text;
     }
 
+    std::optional<Trajectory> truth() const override {
+        if (const auto* simulated = dynamic_cast<const sim::SimulatedSource*>(&shell_.source()))
+            return simulated->ground_truth();
+        const std::filesystem::path file = folder_ / "groundtruth.txt";
+        std::error_code ignored;
+        if (!std::filesystem::is_regular_file(file, ignored)) return std::nullopt;
+        return read_trajectory(file);
+    }
+    void write_truth(const std::filesystem::path& folder) const override {
+        if (const auto* simulated = dynamic_cast<const sim::SimulatedSource*>(&shell_.source())) {
+            write_trajectory(folder / "groundtruth.txt", simulated->ground_truth());
+            sim::write_planes_truth(folder / "planes_truth.json", simulated->world());
+        }
+    }
+
   private:
     static SensorShellOptions in_process() {
         SensorShellOptions options;
         options.speed = 0;
-        options.color = ColorEncoding::kRaw;
-        options.depth = DepthEncoding::kRaw;
+        options.color = options.depth = "raw";
         return options;
     }
+    std::filesystem::path folder_;
     SensorShell shell_;
 };
 

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "core/camera.hpp"
+#include "core/trajectory.hpp"
 #include "messages/bus.hpp"
 
 namespace planemap {
@@ -23,6 +25,11 @@ class Input {
     virtual std::optional<double> progress() const = 0;
     /// What the user should know at the end (skipped bytes, broken frames); empty if all is well.
     virtual std::string complaints() const = 0;
+    /// The true trajectory of the colour camera, if the input knows it (groundtruth.txt of a folder, the
+    /// simulator).
+    virtual std::optional<Trajectory> truth() const { return std::nullopt; }
+    /// Writes what only the simulator knows: groundtruth.txt and planes_truth.json.
+    virtual void write_truth(const std::filesystem::path&) const {}
 };
 
 /// Opens a TUM-layout folder, an LCM log or a simulator name (sim:...). `camera` is for logs that do not

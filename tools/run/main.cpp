@@ -25,25 +25,22 @@ struct RunOptions {
     PipelineOptions pipeline;
 };
 
-void add_flags(CLI::App& app, RunOptions& options) {
-    app.add_option(
-           "input", options.input,
-           "TUM-layout folder (rgb.txt, depth.txt, camera.json), LCM log, or sim:office[?frames=N&seed=N...]")
-        ->required();
-    app.add_option("-o,--output", options.output, "Folder for the results; made if it is not there")
-        ->required();
-    app.add_option("--camera", options.camera, "camera.json for a log that does not describe its camera");
-    app.add_option("--seed", options.seed, "Of everything random; the same seed gives the same bytes out");
-    app.add_flag("--no-octomap", options.no_octomap, "Do not build the OctoMap to compare with");
-    app.add_flag("-q,--quiet", options.quiet, "No progress lines");
-    app.add_flag("-v,--verbose", options.verbose, "Log more");
-    app.set_config("--config", "", "Read flags from an INI or TOML file: one `name = value` a line");
-    app.allow_config_extras(CLI::config_extras_mode::error);
-    add_flags(app, options.pipeline.segmentation, "segmentation-");
-    add_flags(app, options.pipeline.odometry, "odometry-");
-    add_flags(app, options.pipeline.graph, "graph-");
-    add_flags(app, options.pipeline.map.map, "map-");
-    add_flags(app, options.pipeline.octomap, "octomap-");
+void add_run_flags(Flags& flags, RunOptions& options) {
+    flags.add_positional(
+        "input", options.input,
+        "TUM-layout folder (rgb.txt, depth.txt, camera.json), LCM log, or sim:office[?frames=N&seed=N...]");
+    flags.add("o,output", options.output, "Folder for the results; made if it is not there");
+    flags.required();
+    flags.add("camera", options.camera, "camera.json for a log that does not describe its camera");
+    flags.add("seed", options.seed, "Of everything random; the same seed gives the same bytes out");
+    flags.add("no-octomap", options.no_octomap, "Do not build the OctoMap to compare with");
+    flags.add("q,quiet", options.quiet, "No progress lines");
+    flags.add("v,verbose", options.verbose, "Log more");
+    add_flags(flags, options.pipeline.segmentation, "segmentation-");
+    add_flags(flags, options.pipeline.odometry, "odometry-");
+    add_flags(flags, options.pipeline.graph, "graph-");
+    add_flags(flags, options.pipeline.map.map, "map-");
+    add_flags(flags, options.pipeline.octomap, "octomap-");
 }
 
 /// The output folder, made and tried, so that a run of an hour does not end in an error that could be seen at
@@ -98,15 +95,15 @@ int run(RunOptions options) {
 }  // namespace planemap
 
 int main(int argc, char** argv) {
-    CLI::App app(
+    planemap::Flags flags(
+        "planemap-run",
         "A recording to a plane map: runs all modules in one process, as fast as the machine allows, and "
         "writes the\n"
         "trajectory, the map, an OctoMap of the same depth and poses, and a report of what each takes.\n"
-        "Example: planemap-run sim:office --output out/office",
-        "planemap-run");
+        "Example: planemap-run sim:office --output out/office");
     planemap::RunOptions options;
-    planemap::add_flags(app, options);
-    const int parsed = planemap::parse_flags(app, argc, argv);
+    planemap::add_run_flags(flags, options);
+    const int parsed = flags.parse(argc, argv);
     if (parsed >= 0) return parsed;
     planemap::start_logging("planemap-run", options.verbose);
     return planemap::run_main("planemap-run", [&] { return planemap::run(options); });

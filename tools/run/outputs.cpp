@@ -14,7 +14,6 @@
 #include "run/input.hpp"
 #include "run/pipeline.hpp"
 #include "run/report.hpp"
-#include "sensor/simulator/simulator.hpp"
 
 namespace planemap {
 
@@ -90,15 +89,6 @@ void add_sizes(Pipeline& pipeline, std::int64_t frames, Json& report) {
     report["coverage"] = coverage;
 }
 
-/// The truth that lies beside the input, if any: the simulator's, or a folder's groundtruth.txt.
-std::optional<Trajectory> truth_of(const std::string& input_name, const std::filesystem::path& folder) {
-    std::error_code ignored;
-    if (is_simulator_name(input_name)) return read_trajectory(folder / "groundtruth.txt");
-    const std::filesystem::path file = std::filesystem::path(input_name) / "groundtruth.txt";
-    if (std::filesystem::is_regular_file(file, ignored)) return read_trajectory(file);
-    return std::nullopt;
-}
-
 void add_accuracy(const Trajectory& truth, const Trajectory& estimate, Json& report) {
     const Evaluation evaluation = evaluate(truth, estimate, {});
     if (!evaluation.ate || !evaluation.rpe_frame) return;
@@ -129,7 +119,7 @@ Json write_outputs(const std::filesystem::path& folder, const std::string& input
     write_file(folder / "overhead.svg", overhead_svg(map, trajectory));
     write_file(folder / "map.svg", perspective_svg(map, trajectory));
     if (pipeline.octomap() != nullptr) write_file(folder / "octomap.bt", pipeline.octomap()->builder().bt());
-    if (is_simulator_name(input_name)) write_simulator_truth(input_name, folder);
+    input.write_truth(folder);
 
     const auto& estimates = pipeline.estimates();
     const auto tracked = std::count_if(estimates.begin(), estimates.end(),
@@ -152,7 +142,7 @@ Json write_outputs(const std::filesystem::path& folder, const std::string& input
     report["frames_per_s_without_octomap"] =
         static_cast<double>(input.frames()) / std::max(clock.wall_s() - octomap_s, 1e-9);
     add_sizes(pipeline, input.frames(), report);
-    if (const auto truth = truth_of(input_name, folder)) add_accuracy(*truth, trajectory, report);
+    if (const auto truth = input.truth()) add_accuracy(*truth, trajectory, report);
     write_file(folder / "report.md", report_markdown(report));
     write_file(folder / "report.json", report.dump(2) + "\n");
     return report;

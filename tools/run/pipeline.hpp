@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/keyframe.hpp"
+#include "core/trajectory.hpp"
 #include "graph/graph_shell.hpp"
 #include "map/map_shell.hpp"
 #include "messages/bus.hpp"

@@ -7,7 +7,7 @@
 #include "messages/log.hpp"
 #include "messages/process.hpp"
 #include "sensor/sensor_shell.hpp"
-#include "sensor/simulator/simulator.hpp"
+#include "sensor/simulator/simulated_source.hpp"
 
 namespace planemap {
 namespace {
@@ -15,12 +15,12 @@ namespace {
 int simulate(const std::string& world, const std::filesystem::path& output,
              const SensorShellOptions& options) {
     catch_stop_signals();
-    if (!is_simulator_name(world))
-        throw std::invalid_argument(world + ": is no simulator name; try sim:office");
+    auto source = std::make_unique<sim::SimulatedSource>(sim::parse_simulator_name(world));
+    const sim::SimulatedSource& simulated = *source;
     const std::filesystem::path folder = output.parent_path().empty() ? "." : output.parent_path();
     std::filesystem::create_directories(folder);
     Bus bus("memq://");
-    SensorShell sensor(bus, open_source(world), options);
+    SensorShell sensor(bus, std::move(source), options);
     // Beside and renamed: a log that bears its final name is whole.
     const std::filesystem::path beside = output.string() + ".part";
     LogWriter log(beside);
@@ -42,7 +42,8 @@ int simulate(const std::string& world, const std::filesystem::path& output,
     }
     log.close();
     std::filesystem::rename(beside, output);
-    write_simulator_truth(world, folder);
+    write_trajectory(folder / "groundtruth.txt", simulated.ground_truth());
+    sim::write_planes_truth(folder / "planes_truth.json", simulated.world());
     std::printf("%s: %lld frames, %.1f MB; exact poses in %s, planes in %s\n", output.c_str(),
                 static_cast<long long>(sensor.frames()), static_cast<double>(bytes) / 1e6,
                 (folder / "groundtruth.txt").c_str(), (folder / "planes_truth.json").c_str());
@@ -53,23 +54,22 @@ int simulate(const std::string& world, const std::filesystem::path& output,
 }  // namespace planemap
 
 int main(int argc, char** argv) {
-    CLI::App app(
-        "The simulator to an LCM log (OPENNI_FRAME with JPEG and zipped depth, PLANEMAP_CAMERA_INFO), with "
-        "the exact poses\n"
-        "(groundtruth.txt, TUM format) and planes (planes_truth.json) beside it.\n"
-        "Example: planemap-simulate --output office/office.lcmlog",
-        "planemap-simulate");
+    planemap::Flags flags("planemap-simulate",
+                          "The simulator to an LCM log (OPENNI_FRAME with JPEG and zipped depth, "
+                          "PLANEMAP_CAMERA_INFO), with the exact poses\n"
+                          "(groundtruth.txt, TUM format) and planes (planes_truth.json) beside it.\n"
+                          "Example: planemap-simulate --output office/office.lcmlog");
     std::string world = "sim:office";
     std::filesystem::path output;
     planemap::SensorShellOptions options;
-    app.add_option("world", world, "Simulator name, e.g. sim:office?frames=300&seed=7")
-        ->capture_default_str();
-    app.add_option("-o,--output", output, "The log to write")->required();
-    add_flags(app, options);
-    const int parsed = planemap::parse_flags(app, argc, argv);
+    flags.add_positional("world", world,
+                         "Simulator name, e.g. sim:office?frames=300&seed=7; default: sim:office", false);
+    flags.add("o,output", output, "The log to write");
+    flags.required();
+    add_encoding_flags(flags, options);
+    const int parsed = flags.parse(argc, argv);
     if (parsed >= 0) return parsed;
-    options.rate_hz = 0;
-    options.speed = 0;
+    options.speed = 0;  // as fast as it can be written
     planemap::start_logging("planemap-simulate", false);
     return planemap::run_main("planemap-simulate",
                               [&] { return planemap::simulate(world, output, options); });

@@ -1,0 +1,486 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "graph/graph.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <queue>
+#include <string>
+#include <unordered_map>
+
+#include "core/validation.hpp"
+#include "graph/optimisation.hpp"
+#include "graph/place_index.hpp"
+#include "graph/verification.hpp"
+#include "graph/view.hpp"
+
+namespace planemap {
+
+namespace {
+
+constexpr double kMaxReach = 1e6;  // metres: further away is not a pose but a mistake
+
+std::size_t at(int index) {
+    return static_cast<std::size_t>(index);
+}
+
+/// How far odometry may have gone astray between two keyframes.
+struct Drift {
+    double metres = std::numeric_limits<double>::infinity();
+    double radians = std::numeric_limits<double>::infinity();
+
+    double size() const { return metres + radians; }
+    Drift operator+(const Drift& other) const { return {metres + other.metres, radians + other.radians}; }
+};
+
+struct Node {
+    int id = -1;
+    std::int64_t utime = 0;
+    Pose odom_from_camera = Pose::Identity();
+    graph::View view;
+};
+
+struct Link {
+    int other = -1;
+    Drift drift;
+    bool odometry = false;
+};
+
+bool is_pose(const Pose& pose) {
+    return is_valid(pose) && pose.translation().cwiseAbs().maxCoeff() < kMaxReach;
+}
+
+void check(const Keyframe& keyframe, int last_id) {
+    FieldErrors errors("keyframe");
+    errors.require(keyframe.id > last_id, "id", keyframe.id, "greater than " + std::to_string(last_id));
+    errors.require(keyframe.previous_id >= -1 && keyframe.previous_id < std::max(keyframe.id, 0),
+                   "previous_id", keyframe.previous_id, "-1 or an earlier keyframe's id");
+    errors.require(is_pose(keyframe.odom_from_camera), "odom_from_camera", "not a rigid transform",
+                   "a rigid transform");
+    errors.require(keyframe.previous_id < 0 || is_pose(keyframe.previous_from_camera), "previous_from_camera",
+                   "not a rigid transform", "a rigid transform");
+    const auto regions = static_cast<int>(keyframe.regions.size());
+    for (std::size_t i = 0; i < keyframe.features.size() && !errors.any(); ++i) {
+        const Feature& feature = keyframe.features[i];
+        const std::string name = "features[" + std::to_string(i) + "]";
+        errors.require(feature.point.allFinite(), name + ".point", "not finite", "finite");
+        errors.require(feature.pixel.allFinite(), name + ".pixel", "not finite", "finite");
+        errors.require(feature.region >= -1 && feature.region < regions, name + ".region", feature.region,
+                       "-1 or an index into regions");
+    }
+    for (std::size_t i = 0; i < keyframe.regions.size() && !errors.any(); ++i) {
+        errors.require(is_valid(keyframe.regions[i]), "regions[" + std::to_string(i) + "]", "not valid",
+                       "finite, with a unit normal and at least three points");
+    }
+    errors.throw_if_any();
+}
+
+graph::VerificationOptions verification_options(const GraphOptions& options) {
+    graph::VerificationOptions out;
+    out.matching = {options.max_descriptor_distance, options.matching_ratio};
+    out.noise = options.noise;
+    out.bearing_sigma = options.bearing_sigma;
+    out.min_inliers = options.min_inliers;
+    out.min_inlier_ratio = options.min_inlier_ratio;
+    out.min_visible_ratio = options.min_visible_ratio;
+    out.max_contradiction = options.max_contradiction;
+    return out;
+}
+
+/// Largest standard deviation of a covariance's translation and rotation; 0 where it is not usable.
+Drift worst_sigmas(const Matrix6d& covariance) {
+    if (!covariance.allFinite()) return {0, 0};
+    const auto worst = [](const Eigen::Matrix3d& block) {
+        return std::sqrt(std::max(0.0, block.diagonal().maxCoeff()));
+    };
+    return {worst(covariance.topLeftCorner<3, 3>()), worst(covariance.bottomRightCorner<3, 3>())};
+}
+
+/// Sets of nodes that are tied to each other.
+class Components {
+  public:
+    explicit Components(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0); }
+
+    int find(int node) {
+        while (parent_[at(node)] != node) node = parent_[at(node)] = parent_[at(parent_[at(node)])];
+        return node;
+    }
+    /// False when they were one already.
+    bool join(int a, int b) {
+        const int root_a = find(a), root_b = find(b);
+        parent_[at(std::max(root_a, root_b))] = std::min(root_a, root_b);
+        return root_a != root_b;
+    }
+
+  private:
+    std::vector<int> parent_;
+};
+
+}  // namespace
+
+void GraphOptions::validate() const {
+    FieldErrors errors("graph options");
+    const auto count = [&](int value, int least, const char* field) {
+        errors.require(value >= least, field, value, "at least " + std::to_string(least));
+    };
+    const auto positive = [&](double value, const char* field) {
+        errors.require(std::isfinite(value) && value > 0, field, value, "finite and greater than 0");
+    };
+    const auto not_negative = [&](double value, const char* field) {
+        errors.require(std::isfinite(value) && value >= 0, field, value, "finite and at least 0");
+    };
+    const auto share = [&](double value, const char* field) {
+        errors.require(value >= 0 && value <= 1, field, value, "0 to 1");
+    };
+    count(max_features, 1, "max_features");
+    count(min_separation, 1, "min_separation");
+    count(appearance_candidates, 0, "appearance_candidates");
+    count(place_candidates, 0, "place_candidates");
+    count(max_closures, 0, "max_closures");
+    share(min_appearance, "min_appearance");
+    share(min_overlap, "min_overlap");
+    not_negative(max_place_drift_m, "max_place_drift_m");
+    errors.require(max_descriptor_distance >= 0 && max_descriptor_distance <= 256, "max_descriptor_distance",
+                   max_descriptor_distance, "0 to 256");
+    share(matching_ratio, "matching_ratio");
+    not_negative(noise.base_m, "noise.base_m");
+    not_negative(noise.quadratic_per_m, "noise.quadratic_per_m");
+    errors.require(std::isfinite(noise.offset_m), "noise.offset_m", noise.offset_m, "finite");
+    positive(bearing_sigma, "bearing_sigma");
+    count(min_inliers, 3, "min_inliers");
+    share(min_inlier_ratio, "min_inlier_ratio");
+    share(min_visible_ratio, "min_visible_ratio");
+    share(max_contradiction, "max_contradiction");
+    not_negative(drift_per_metre, "drift_per_metre");
+    not_negative(drift_per_radian, "drift_per_radian");
+    not_negative(drift_base_m, "drift_base_m");
+    not_negative(drift_base_rad, "drift_base_rad");
+    not_negative(max_lost_speed, "max_lost_speed");
+    positive(odometry_sigma_m, "odometry_sigma_m");
+    positive(odometry_sigma_rad, "odometry_sigma_rad");
+    positive(loop_sigma_m, "loop_sigma_m");
+    positive(loop_sigma_rad, "loop_sigma_rad");
+    positive(kernel_width, "kernel_width");
+    count(max_iterations, 1, "max_iterations");
+    count(optimise_every, 0, "optimise_every");
+    positive(revision_m, "revision_m");
+    positive(revision_rad, "revision_rad");
+    errors.throw_if_any();
+}
+
+class PoseGraph::Impl {
+  public:
+    explicit Impl(GraphOptions options) : options_(std::move(options)) { options_.validate(); }
+
+    const KeyframeTrajectory& add(const Keyframe& keyframe) {
+        check(keyframe, nodes_.empty() ? -1 : nodes_.back().id);
+        append(keyframe);
+        const bool closed = close_loops();
+        const bool due = options_.optimise_every > 0 && nodes_.size() % at(options_.optimise_every) == 0 &&
+                         !loops_.empty();
+        if (closed || due) optimise(closed);
+        publish();
+        return trajectory_;
+    }
+
+    const KeyframeTrajectory& trajectory() const { return trajectory_; }
+    const std::vector<LoopClosure>& loop_closures() const { return loops_; }
+
+  private:
+    int newest() const { return static_cast<int>(nodes_.size()) - 1; }
+
+    /// Adds the node, ties it to the previous one and places it.
+    void append(const Keyframe& keyframe) {
+        nodes_.push_back({keyframe.id, keyframe.utime, keyframe.odom_from_camera,
+                          graph::make_view(keyframe, options_.max_features)});
+        links_.emplace_back();
+        const int node = newest();
+        index_of_[keyframe.id] = node;
+        const auto previous = index_of_.find(keyframe.previous_id);
+        if (previous != index_of_.end() && previous->second != node) {
+            add_odometry(previous->second, node, keyframe);
+        } else if (node == 0) {
+            poses_.push_back(keyframe.odom_from_camera);
+        } else {
+            add_gap(node, keyframe);
+        }
+        index_.add(nodes_.back().view.descriptors);
+    }
+
+    void add_odometry(int from, int to, const Keyframe& keyframe) {
+        const Pose& step = keyframe.previous_from_camera;
+        odometry_.push_back({from, to, step,
+                             graph::sqrt_information(keyframe.covariance, options_.odometry_sigma_m,
+                                                     options_.odometry_sigma_rad),
+                             false});
+        const double drift = options_.drift_per_metre * step.translation().norm() +
+                             options_.drift_per_radian * rotation_angle(step);
+        link(from, to, Drift{drift, drift} + worst_sigmas(keyframe.covariance), true);
+        poses_.push_back(orthonormalised(poses_[at(from)] * step));
+    }
+
+    /// After a loss: placed by odom_from_camera; how far the camera went meanwhile is bounded by its speed.
+    void add_gap(int node, const Keyframe& keyframe) {
+        const Node& last = nodes_[at(node - 1)];
+        const double seconds = std::clamp(
+            static_cast<double>(keyframe.utime) * 1e-6 - static_cast<double>(last.utime) * 1e-6, 0.0, 3600.0);
+        const double reach = options_.max_lost_speed * seconds;
+        const Matrix6d nothing_known = Matrix6d::Zero();
+        gaps_.push_back({node - 1, node,
+                         last.odom_from_camera.inverse(Eigen::Isometry) * keyframe.odom_from_camera,
+                         graph::sqrt_information(nothing_known, 1.0 + reach, std::numbers::pi), false});
+        link(node - 1, node, {reach, std::numbers::pi}, false);
+        poses_.push_back(orthonormalised(world_from_odom() * keyframe.odom_from_camera));
+    }
+
+    Pose world_from_odom() const { return trajectory_.world_from_odom; }
+
+    void link(int a, int b, const Drift& drift, bool odometry) {
+        links_[at(a)].push_back({b, drift, odometry});
+        links_[at(b)].push_back({a, drift, odometry});
+    }
+
+    /// Least drift from the newest node to each other one (Dijkstra).
+    std::vector<Drift> drifts() const {
+        std::vector<Drift> drifts(nodes_.size());
+        drifts.back() = {0, 0};
+        using Entry = std::pair<double, int>;
+        std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
+        open.emplace(0.0, newest());
+        while (!open.empty()) {
+            const auto [size, node] = open.top();
+            open.pop();
+            if (size > drifts[at(node)].size()) continue;
+            for (const Link& link : links_[at(node)]) {
+                const Drift drift = drifts[at(node)] + link.drift;
+                if (drift.size() >= drifts[at(link.other)].size()) continue;
+                drifts[at(link.other)] = drift;
+                open.emplace(drift.size(), link.other);
+            }
+        }
+        return drifts;
+    }
+
+    /// Marks the nodes within min_separation steps of odometry from the newest, itself included.
+    std::vector<bool> neighbours() const {
+        std::vector<bool> near(nodes_.size(), false);
+        near.back() = true;
+        std::vector<int> ring{newest()};
+        for (int step = 1; step < options_.min_separation; ++step) {
+            std::vector<int> next;
+            for (const int node : ring) {
+                for (const Link& link : links_[at(node)]) {
+                    if (!link.odometry || near[at(link.other)]) continue;
+                    near[at(link.other)] = true;
+                    next.push_back(link.other);
+                }
+            }
+            ring = std::move(next);
+        }
+        return near;
+    }
+
+    /// The nodes of the highest scores of at least `least`, none beside another.
+    static std::vector<int> peaks(const std::vector<double>& scores, double least, int count) {
+        std::vector<int> order;
+        for (int i = 0; i < static_cast<int>(scores.size()); ++i) {
+            if (scores[at(i)] >= least && scores[at(i)] > 0) order.push_back(i);
+        }
+        std::stable_sort(order.begin(), order.end(),
+                         [&](int a, int b) { return scores[at(a)] > scores[at(b)]; });
+        std::vector<int> chosen;
+        for (const int node : order) {
+            if (static_cast<int>(chosen.size()) >= count) break;
+            const bool beside = std::any_of(chosen.begin(), chosen.end(),
+                                            [&](int other) { return std::abs(other - node) <= 2; });
+            if (!beside) chosen.push_back(node);
+        }
+        return chosen;
+    }
+
+    std::vector<double> appearance_scores(const std::vector<bool>& near) const {
+        std::vector<double> scores = index_.scores(nodes_.back().view.descriptors);
+        for (std::size_t i = 0; i < scores.size(); ++i) {
+            if (near[i]) scores[i] = 0;
+        }
+        return scores;
+    }
+
+    /// Share of the newest view that each node should see too; 0 where drift leaves that open.
+    std::vector<double> place_scores(const std::vector<bool>& near, const std::vector<Drift>& drifts) const {
+        constexpr double kFarthest = 4.0;  // metres between two cameras that see the same from alike
+        std::vector<double> scores(nodes_.size(), 0.0);
+        for (std::size_t i = 0; i < nodes_.size(); ++i) {
+            if (near[i] || drifts[i].metres > options_.max_place_drift_m) continue;
+            if ((poses_[i].translation() - poses_.back().translation()).norm() > kFarthest) continue;
+            const Pose node_from_newest = poses_[i].inverse(Eigen::Isometry) * poses_.back();
+            if (node_from_newest.linear()(2, 2) < 0.5) continue;  // optical axes more than 60 degrees apart
+            scores[i] = std::min(graph::overlap(nodes_[i].view, nodes_.back().view, node_from_newest),
+                                 graph::overlap(nodes_.back().view, nodes_[i].view,
+                                                node_from_newest.inverse(Eigen::Isometry)));
+        }
+        return scores;
+    }
+
+    std::vector<int> candidates(const std::vector<Drift>& drifts) const {
+        const std::vector<bool> near = neighbours();
+        std::vector<int> found =
+            peaks(appearance_scores(near), options_.min_appearance, options_.appearance_candidates);
+        for (const int node :
+             peaks(place_scores(near, drifts), options_.min_overlap, options_.place_candidates)) {
+            if (std::find(found.begin(), found.end(), node) == found.end()) found.push_back(node);
+        }
+        return found;
+    }
+
+    bool fits_odometry(int node, const Drift& drift, const Pose& node_from_newest) const {
+        const Pose expected = poses_[at(node)].inverse(Eigen::Isometry) * poses_.back();
+        return (expected.translation() - node_from_newest.translation()).norm() <=
+                   options_.drift_base_m + drift.metres &&
+               rotation_angle(expected.inverse(Eigen::Isometry) * node_from_newest) <=
+                   options_.drift_base_rad + drift.radians;
+    }
+
+    /// Joins the newest keyframe to earlier ones that saw the same; true when any was found.
+    bool close_loops() {
+        if (newest() == 0 || options_.max_closures == 0) return false;
+        const std::vector<Drift> drifts = this->drifts();
+        const graph::VerificationOptions options = verification_options(options_);
+        int closed = 0;
+        for (const int node : candidates(drifts)) {
+            if (closed == options_.max_closures) break;
+            const auto seed = static_cast<std::uint64_t>(node) << 32 | static_cast<std::uint64_t>(newest());
+            const graph::Verification found =
+                graph::verify(nodes_[at(node)].view, nodes_.back().view, options, seed);
+            if (found.verdict != graph::Verdict::kAccepted) continue;
+            if (!fits_odometry(node, drifts[at(node)], found.a_from_b)) continue;
+            add_loop(node, found);
+            ++closed;
+        }
+        return closed > 0;
+    }
+
+    void add_loop(int node, const graph::Verification& found) {
+        carry_component(node, found.a_from_b);
+        loop_edges_.push_back(
+            {node, newest(), found.a_from_b,
+             graph::sqrt_information(found.covariance, options_.loop_sigma_m, options_.loop_sigma_rad),
+             true});
+        loops_.push_back({nodes_[at(node)].id, nodes_.back().id, found.a_from_b, found.covariance,
+                          found.matches, found.inliers, 1.0});
+        link(node, newest(),
+             worst_sigmas(found.covariance) + Drift{options_.loop_sigma_m, options_.loop_sigma_rad}, false);
+    }
+
+    Components components() const {
+        Components components(nodes_.size());
+        for (const auto& edge : odometry_) components.join(edge.from, edge.to);
+        for (const auto& edge : loop_edges_) components.join(edge.from, edge.to);
+        return components;
+    }
+
+    /// When a loop closure is the first tie between two parts of the graph, the part without the first
+    /// keyframe is moved as a whole to where the closure says.
+    void carry_component(int node, const Pose& node_from_newest) {
+        Components parts = components();
+        const int part = parts.find(node), newest_part = parts.find(newest());
+        if (part == newest_part) return;
+        const bool carry_newest = newest_part != parts.find(0);
+        const Pose correction = poses_[at(node)] * node_from_newest * poses_.back().inverse(Eigen::Isometry);
+        const Pose move = carry_newest ? correction : correction.inverse(Eigen::Isometry);
+        const int moving = carry_newest ? newest_part : part;
+        for (int i = 0; i <= newest(); ++i) {
+            if (parts.find(i) == moving) poses_[at(i)] = orthonormalised(move * poses_[at(i)]);
+        }
+    }
+
+    /// All edges; of the gaps only those across which nothing else ties the parts.
+    std::vector<graph::PoseEdge> all_edges(bool trusted_loops_only) const {
+        std::vector<graph::PoseEdge> edges = odometry_;
+        Components parts(nodes_.size());
+        for (const auto& edge : odometry_) parts.join(edge.from, edge.to);
+        for (std::size_t i = 0; i < loop_edges_.size(); ++i) {
+            if (trusted_loops_only && loops_[i].weight < kDistrusted) continue;
+            edges.push_back(loop_edges_[i]);
+            parts.join(loop_edges_[i].from, loop_edges_[i].to);
+        }
+        for (const auto& gap : gaps_) {
+            if (parts.join(gap.from, gap.to)) edges.push_back(gap);
+        }
+        return edges;
+    }
+
+    /// A loop closure far from the present poses is first trusted fully, so that it can pull against the
+    /// kernel; then the kernel lets go of what the rest contradicts.
+    void optimise(bool closed) {
+        const bool far =
+            closed && std::any_of(loop_edges_.begin(), loop_edges_.end(), [&](const auto& edge) {
+                return edge.to == newest() &&
+                       graph::edge_error(edge, poses_[at(edge.from)], poses_[at(edge.to)]).norm() >
+                           options_.kernel_width;
+            });
+        if (far) graph::optimise(poses_, all_edges(true), 0, {0.0, options_.max_iterations});
+        graph::optimise(poses_, all_edges(false), 0, {options_.kernel_width, options_.max_iterations});
+        for (std::size_t i = 0; i < loops_.size(); ++i) {
+            const graph::PoseEdge& edge = loop_edges_[i];
+            const double error = graph::edge_error(edge, poses_[at(edge.from)], poses_[at(edge.to)]).norm();
+            loops_[i].weight = 1 / (1 + error * error / (options_.kernel_width * options_.kernel_width));
+        }
+    }
+
+    void publish() {
+        const bool moved = std::any_of(
+            revision_poses_.begin(), revision_poses_.end(), [&, i = 0](const Pose& before) mutable {
+                const Pose change = before.inverse(Eigen::Isometry) * poses_[at(i++)];
+                return change.translation().norm() > options_.revision_m ||
+                       rotation_angle(change) > options_.revision_rad;
+            });
+        if (moved) {
+            ++trajectory_.revision;
+            revision_poses_ = poses_;
+        } else {
+            revision_poses_.push_back(poses_.back());
+        }
+        trajectory_.utime = nodes_.back().utime;
+        trajectory_.loop_closures = static_cast<int>(loops_.size());
+        trajectory_.world_from_odom =
+            orthonormalised(poses_.back() * nodes_.back().odom_from_camera.inverse(Eigen::Isometry));
+        trajectory_.keyframes.push_back({nodes_.back().id, nodes_.back().utime, Pose::Identity()});
+        for (std::size_t i = 0; i < poses_.size(); ++i)
+            trajectory_.keyframes[i].world_from_camera = poses_[i];
+    }
+
+    static constexpr double kDistrusted = 0.05;  // weight of a loop closure that counts as wrong
+
+    GraphOptions options_;
+    std::vector<Node> nodes_;
+    std::vector<Pose> poses_;  ///< world_from_camera of each node
+    std::vector<std::vector<Link>> links_;
+    std::unordered_map<int, int> index_of_;  ///< node of a keyframe's id
+    std::vector<graph::PoseEdge> odometry_, loop_edges_, gaps_;
+    std::vector<LoopClosure> loops_;  ///< one a loop edge
+    graph::PlaceIndex index_;
+    std::vector<Pose> revision_poses_;  ///< of the nodes when they last made a revision
+    KeyframeTrajectory trajectory_;
+};
+
+PoseGraph::PoseGraph(GraphOptions options) : impl_(std::make_unique<Impl>(std::move(options))) {}
+PoseGraph::~PoseGraph() = default;
+PoseGraph::PoseGraph(PoseGraph&&) noexcept = default;
+PoseGraph& PoseGraph::operator=(PoseGraph&&) noexcept = default;
+
+const KeyframeTrajectory& PoseGraph::add(const Keyframe& keyframe) {
+    return impl_->add(keyframe);
+}
+
+const KeyframeTrajectory& PoseGraph::trajectory() const {
+    return impl_->trajectory();
+}
+
+const std::vector<LoopClosure>& PoseGraph::loop_closures() const {
+    return impl_->loop_closures();
+}
+
+}  // namespace planemap

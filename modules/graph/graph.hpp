@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "core/camera.hpp"
+#include "core/keyframe.hpp"
+
+namespace planemap {
+
+/// Options of PoseGraph.
+struct GraphOptions {
+    int max_features = 600;  ///< of a keyframe, kept for loop closure
+
+    int min_separation = 8;          ///< keyframes between two that a loop closure may join, along one chain
+    int appearance_candidates = 3;   ///< keyframes tried for a new one because they look alike
+    int place_candidates = 3;        ///< keyframes tried because they should see the same place
+    int max_closures = 2;            ///< accepted for one keyframe
+    double min_appearance = 0.02;    ///< share of the new keyframe's rare features that a candidate has too
+    double min_overlap = 0.3;        ///< share of points in view, for a candidate by place
+    double max_place_drift_m = 1.0;  ///< with more drift between two keyframes, place says nothing
+
+    int max_descriptor_distance = 64;  ///< bits in which two descriptors of one point may differ
+    double matching_ratio = 0.85;      ///< best to second-best descriptor distance, at most
+    DepthNoise noise;                  ///< of the features' points along their rays
+    double bearing_sigma = 0.003;      ///< of the features' points across their rays, radians
+    int min_inliers = 25;              ///< matched points that agree with a loop closure
+    double min_inlier_ratio = 0.35;    ///< of the matches
+    double min_visible_ratio = 0.12;   ///< inliers, of the points that both views should see
+    double max_contradiction = 0.25;   ///< share of plane samples that the other view saw through
+
+    double drift_per_metre = 0.05;   ///< bound of odometry's drift: metres a metre of path
+    double drift_per_radian = 0.05;  ///< metres and radians a radian of turning
+    double drift_base_m = 0.2;       ///< metres, on top
+    double drift_base_rad = 0.2;     ///< radians, on top
+    double max_lost_speed = 2.0;     ///< of the camera while odometry is lost, m/s
+
+    double odometry_sigma_m = 0.005;    ///< added to each odometry edge's covariance: metres
+    double odometry_sigma_rad = 0.005;  ///< and radians
+    double loop_sigma_m = 0.010;        ///< added to each loop closure's covariance: metres
+    double loop_sigma_rad = 0.005;      ///< and radians
+    double kernel_width = 3.0;          ///< Cauchy kernel of loop closures, standard deviations
+    int max_iterations = 30;            ///< of one optimisation
+    int optimise_every = 0;             ///< also without a closure, each so many keyframes; 0: never
+    double revision_m = 0.001, revision_rad = 0.0005;  ///< movement of a keyframe that makes a new revision
+
+    /// Throws std::invalid_argument that names every bad field.
+    void validate() const;
+};
+
+/// Two keyframes that saw the same place.
+struct LoopClosure {
+    int from_id = -1, to_id = -1;            ///< from the older to the newer one
+    Pose from_from_to = Pose::Identity();    ///< newer camera in the older camera's frame
+    Matrix6d covariance = Matrix6d::Zero();  ///< translation, rotation; newer camera's frame
+    int matches = 0;                         ///< descriptors matched
+    int inliers = 0;                         ///< points that agree
+    double weight =
+        1;  ///< in the last optimisation, 0 to 1: near 0 when the rest of the graph contradicts it
+};
+
+/// Keyframes, the edges between them, and the poses that fit all edges best. World is the odom frame of the
+/// first keyframe, and the first keyframe never moves. The same keyframes in the same order give the same
+/// result.
+class PoseGraph {
+  public:
+    /// Throws std::invalid_argument for bad options.
+    explicit PoseGraph(GraphOptions options = {});
+    ~PoseGraph();
+    PoseGraph(PoseGraph&&) noexcept;
+    PoseGraph& operator=(PoseGraph&&) noexcept;
+
+    /// Adds a keyframe, looks for loop closures, optimises if one was found. Throws std::invalid_argument
+    /// naming the field, and leaves the graph as it was, for a keyframe whose id is not greater than the last
+    /// one's, or with values that are not finite, poses that are not rigid, regions that are not valid. A
+    /// covariance that is not usable counts as large. An edge from a keyframe that never arrived counts as
+    /// none: like after a loss, the keyframe is placed by odom_from_camera until a loop closure ties it to
+    /// the others.
+    const KeyframeTrajectory& add(const Keyframe& keyframe);
+
+    const KeyframeTrajectory& trajectory() const;
+    /// All that were accepted, in the order they were found.
+    const std::vector<LoopClosure>& loop_closures() const;
+
+  private:
+    class Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace planemap

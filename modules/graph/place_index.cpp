@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "graph/place_index.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+
+namespace planemap::graph {
+
+PlaceIndex::PlaceIndex() {
+    std::mt19937_64 engine(20160924);
+    std::array<std::uint8_t, 256> all{};
+    std::iota(all.begin(), all.end(), std::uint8_t{0});
+    std::size_t next = all.size();
+    for (auto& table : bits_) {
+        for (auto& bit : table) {
+            if (next == all.size()) {
+                for (std::size_t i = all.size(); i-- > 1;) std::swap(all[i], all[engine() % (i + 1)]);
+                next = 0;
+            }
+            bit = all[next++];
+        }
+    }
+    for (auto& table : places_of_) table.resize(std::size_t{1} << kBits);
+}
+
+PlaceIndex::Words PlaceIndex::words(std::span<const Descriptor> descriptors) const {
+    Words words;
+    for (std::size_t table = 0; table < kTables; ++table) {
+        words[table].reserve(descriptors.size());
+        for (const Descriptor& descriptor : descriptors) {
+            unsigned word = 0;
+            for (const auto bit : bits_[table]) word = word << 1 | (descriptor[bit / 8] >> (bit % 8) & 1u);
+            words[table].push_back(static_cast<std::uint16_t>(word));
+        }
+        std::sort(words[table].begin(), words[table].end());
+        words[table].erase(std::unique(words[table].begin(), words[table].end()), words[table].end());
+    }
+    return words;
+}
+
+void PlaceIndex::add(std::span<const Descriptor> descriptors) {
+    const Words mine = words(descriptors);
+    for (std::size_t table = 0; table < kTables; ++table) {
+        for (const auto word : mine[table]) places_of_[table][word].push_back(size_);
+    }
+    ++size_;
+}
+
+std::vector<double> PlaceIndex::scores(std::span<const Descriptor> descriptors) const {
+    std::vector<double> scores(static_cast<std::size_t>(size_), 0.0);
+    const Words mine = words(descriptors);
+    const std::size_t too_common = std::max<std::size_t>(20, static_cast<std::size_t>(size_) / 10);
+    double total = 0;
+    for (std::size_t table = 0; table < kTables; ++table) {
+        for (const auto word : mine[table]) {
+            const auto& places = places_of_[table][word];
+            const double weight = std::log1p(size_ / (1.0 + static_cast<double>(places.size())));
+            total += weight;
+            if (places.size() > too_common) continue;
+            for (const auto place : places) scores[static_cast<std::size_t>(place)] += weight;
+        }
+    }
+    for (double& score : scores) score /= std::max(total, 1e-12);
+    return scores;
+}
+
+}  // namespace planemap::graph

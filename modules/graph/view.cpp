@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "graph/view.hpp"
+
+namespace planemap::graph {
+
+View make_view(const Keyframe& keyframe, int max_features) {
+    std::vector<const Feature*> sound;
+    for (const Feature& feature : keyframe.features) {
+        if (feature.point.z() > 0.01f && feature.point.norm() < 1000.0f) sound.push_back(&feature);
+    }
+    View view;
+    const std::size_t kept = std::min(sound.size(), static_cast<std::size_t>(max_features));
+    view.points.reserve(kept);
+    view.descriptors.reserve(kept);
+    for (std::size_t i = 0; i < kept; ++i) {
+        const Feature& feature = *sound[i * sound.size() / kept];
+        const Eigen::Vector3d p = feature.point.cast<double>();
+        const Eigen::Vector2d direction = p.head<2>() / p.z();
+        view.low = view.points.empty() ? direction : Eigen::Vector2d(view.low.cwiseMin(direction));
+        view.high = view.points.empty() ? direction : Eigen::Vector2d(view.high.cwiseMax(direction));
+        view.points.push_back(p);
+        view.descriptors.push_back(feature.descriptor);
+    }
+    view.regions = keyframe.regions;
+    return view;
+}
+
+double overlap(const View& a, const View& b, const Pose& a_from_b) {
+    if (b.points.empty()) return 0;
+    int seen = 0;
+    for (const Eigen::Vector3d& p_b : b.points) seen += a.sees(a_from_b * p_b);
+    return seen / static_cast<double>(b.points.size());
+}
+
+}  // namespace planemap::graph

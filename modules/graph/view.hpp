@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "core/keyframe.hpp"
+
+namespace planemap::graph {
+
+/// What loop closure keeps of a keyframe. All in its camera frame.
+struct View {
+    std::vector<Eigen::Vector3d> points;  ///< metres, z > 0
+    std::vector<Descriptor> descriptors;  ///< one a point
+    std::vector<PlanarRegion> regions;
+    Eigen::Vector2d low = Eigen::Vector2d::Zero(), high = Eigen::Vector2d::Zero();  ///< range of x/z and y/z
+
+    /// True when the point lies in front of the camera within the range of directions of its features.
+    bool sees(const Eigen::Vector3d& p) const {
+        return p.z() > 0 && (p.head<2>().array() >= p.z() * low.array()).all() &&
+               (p.head<2>().array() <= p.z() * high.array()).all();
+    }
+};
+
+/// Features without a point before the camera are left out; of more than max_features, evenly spread ones
+/// stay.
+View make_view(const Keyframe& keyframe, int max_features);
+
+/// Share of the points of b that a would see if b's camera stood at a_from_b; 0 without points.
+double overlap(const View& a, const View& b, const Pose& a_from_b);
+
+}  // namespace planemap::graph

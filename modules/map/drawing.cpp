@@ -1,0 +1,423 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The pictures of export.hpp.
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "map/export.hpp"
+
+namespace planemap {
+
+namespace {
+
+using Polygon3 = std::vector<std::vector<Eigen::Vector3d>>;  ///< rings in the world frame
+
+constexpr double kPageWidth_px = 1200, kPageHeight_px = 800, kMargin_px = 60;
+constexpr double kNumberedArea_m2 = 0.15;  ///< smaller planes are drawn without their number
+
+std::string text(double value) {
+    std::array<char, 32> buffer;
+    const auto end =
+        std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::fixed, 1);
+    return {buffer.data(), end.ptr};
+}
+
+std::string move_to(const Eigen::Vector2d& p) {
+    return std::string("M") + text(p.x()) + "," + text(p.y());
+}
+
+std::string line_to(const Eigen::Vector2d& p) {
+    return std::string("L") + text(p.x()) + "," + text(p.y());
+}
+
+std::string css(const Rgb& color, double shade = 1) {
+    const auto channel = [&](std::uint8_t c) {
+        return std::to_string(std::clamp(std::lround(shade * c), 0l, 255l));
+    };
+    return std::string("rgb(") + channel(color.r) + "," + channel(color.g) + "," + channel(color.b) + ")";
+}
+
+Polygon3 polygon_of(const MapPlane& plane) {
+    Polygon3 rings;
+    for (const Ring& ring : plane.region.outline.rings) {
+        rings.emplace_back();
+        for (const Eigen::Vector2d& v : ring)
+            rings.back().push_back(plane.region.box.frame_from_box * Eigen::Vector3d(v.x(), v.y(), 0));
+    }
+    return rings;
+}
+
+template <typename Project>
+std::string path(const Polygon3& rings, const Project& project) {
+    std::string d;
+    for (const auto& ring : rings) {
+        for (std::size_t i = 0; i < ring.size(); ++i)
+            d += i == 0 ? move_to(project(ring[i])) : line_to(project(ring[i]));
+        d += "Z";
+    }
+    return d;
+}
+
+template <typename Project>
+std::string trajectory_line(const Trajectory& trajectory, const Project& project) {
+    if (trajectory.empty()) return {};
+    std::string d;
+    for (const StampedPose& pose : trajectory) {
+        const Eigen::Vector2d p = project(pose.world_from_camera.translation());
+        d += d.empty() ? move_to(p) : line_to(p);
+    }
+    const auto dot = [&](const StampedPose& pose, const char* color) {
+        const Eigen::Vector2d p = project(pose.world_from_camera.translation());
+        return "<circle cx=\"" + text(p.x()) + "\" cy=\"" + text(p.y()) + "\" r=\"5\" fill=\"" + color +
+               "\" stroke=\"white\"/>\n";
+    };
+    return "<path d=\"" + d +
+           "\" fill=\"none\" stroke=\"#b3142a\" stroke-width=\"2\" stroke-linejoin=\"round\"/>\n" +
+           dot(trajectory.front(), "#1a7f37") + dot(trajectory.back(), "#b3142a");
+}
+
+std::string page(const std::string& title, const std::string& body) {
+    const std::string size = text(kPageWidth_px) + "\" height=\"" + text(kPageHeight_px);
+    return "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + size + "\" viewBox=\"0 0 " +
+           text(kPageWidth_px) + " " + text(kPageHeight_px) +
+           "\" font-family=\"sans-serif\" font-size=\"13\">\n<title>" + title + "</title>\n<rect width=\"" +
+           size + "\" fill=\"white\"/>\n" + body + "</svg>\n";
+}
+
+/// Puts numbers on a page so that they do not cover each other.
+class Numbers {
+  public:
+    std::string place(int id, const Eigen::Vector2d& wanted) {
+        const std::string number = std::to_string(id);
+        const double radius = 6.0 + 3.0 * static_cast<double>(number.size());
+        Eigen::Vector2d at = wanted;
+        for (int step = 0; step < 60 && covers_another(at, radius); ++step) {
+            const double angle = 2.4 * step, away = 5.0 * std::sqrt(step + 1.0);  // a sunflower's spiral
+            at = wanted + away * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+        }
+        placed_.push_back({at, radius});
+        std::string svg;
+        if ((at - wanted).norm() > radius) {
+            svg +=
+                "<path d=\"" + move_to(wanted) + line_to(at) + "\" stroke=\"#555\" stroke-width=\"0.7\"/>\n";
+        }
+        return svg + "<circle cx=\"" + text(at.x()) + "\" cy=\"" + text(at.y()) + "\" r=\"" + text(radius) +
+               "\" fill=\"white\" fill-opacity=\"0.85\" stroke=\"#555\" stroke-width=\"0.7\"/><text x=\"" +
+               text(at.x()) + "\" y=\"" + text(at.y() + 4.5) + "\" text-anchor=\"middle\">" + number +
+               "</text>\n";
+    }
+
+  private:
+    bool covers_another(const Eigen::Vector2d& at, double radius) const {
+        return std::any_of(placed_.begin(), placed_.end(), [&](const auto& other) {
+            return (other.first - at).norm() < radius + other.second;
+        });
+    }
+    std::vector<std::pair<Eigen::Vector2d, double>> placed_;
+};
+
+/// Scales and centres points on the page; y of the input points up the page.
+class Fit {
+  public:
+    explicit Fit(const std::vector<Eigen::Vector2d>& points) {
+        Eigen::Vector2d low(-1, -1), high(1, 1);
+        if (!points.empty()) low = high = points[0];
+        for (const Eigen::Vector2d& p : points) {
+            low = low.cwiseMin(p);
+            high = high.cwiseMax(p);
+        }
+        const Eigen::Vector2d size = (high - low).cwiseMax(1e-3);
+        scale_ = std::min((kPageWidth_px - 2 * kMargin_px) / size.x(),
+                          (kPageHeight_px - 2 * kMargin_px) / size.y());
+        middle_ = 0.5 * (low + high);
+    }
+    double scale() const { return scale_; }
+    Eigen::Vector2d operator()(const Eigen::Vector2d& p) const {
+        const Eigen::Vector2d q = scale_ * (p - middle_);
+        return {0.5 * kPageWidth_px + q.x(), 0.5 * kPageHeight_px - q.y()};
+    }
+
+  private:
+    double scale_ = 1;  ///< pixels per metre
+    Eigen::Vector2d middle_;
+};
+
+/// A bar of 1, 2 or 5 times a power of ten metres, about a sixth of the page.
+std::string scale_bar(double pixels_per_metre) {
+    const double wanted = kPageWidth_px / 6 / pixels_per_metre;
+    double length = std::pow(10, std::floor(std::log10(wanted)));
+    if (5 * length <= wanted) {
+        length *= 5;
+    } else if (2 * length <= wanted) {
+        length *= 2;
+    }
+    const double x = kMargin_px / 2, y = kPageHeight_px - kMargin_px / 2, end = x + length * pixels_per_metre;
+    std::array<char, 32> buffer;
+    const auto to = std::to_chars(buffer.data(), buffer.data() + buffer.size(), length).ptr;
+    return "<path d=\"" + move_to({x, y - 5}) + "v5H" + text(end) +
+           "v-5\" fill=\"none\" stroke=\"black\"/>\n<text x=\"" + text(0.5 * (x + end)) + "\" y=\"" +
+           text(y - 6) + "\" text-anchor=\"middle\">" + std::string(buffer.data(), to) + " m</text>\n";
+}
+
+/// World to a level frame whose z is up and whose x runs along most walls.
+Eigen::Matrix3d level_from_world(const PlaneMap& map, const Eigen::Vector3d& up) {
+    const Eigen::Matrix3d axes = plane_axes(up, Eigen::Vector3d::UnitX());
+    // Directions of walls count modulo a right angle: their angles times four are averaged.
+    Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+    for (const MapPlane& plane : map.planes) {
+        const Eigen::Vector3d n = axes.transpose() * plane.region.plane.normal;
+        if (std::abs(n.z()) > 0.3) continue;
+        const double angle = 4 * std::atan2(n.y(), n.x());
+        sum += plane.area * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+    }
+    const double turn = sum.norm() > 0 ? std::atan2(sum.y(), sum.x()) / 4 : 0;
+    return Eigen::AngleAxisd(-turn, Eigen::Vector3d::UnitZ()) * axes.transpose();
+}
+
+/// A wall seen from above: each outer ring as the line it covers.
+template <typename Project>
+std::string wall_lines(const Polygon3& rings, const Eigen::Vector3d& along, const Project& project) {
+    std::string d;
+    for (const auto& ring : rings) {
+        const auto less = [&](auto& a, auto& b) { return along.dot(a) < along.dot(b); };
+        const auto [from, to] = std::minmax_element(ring.begin(), ring.end(), less);
+        d += move_to(project(*from)) + line_to(project(*to));
+    }
+    return d;
+}
+
+}  // namespace
+
+Eigen::Vector3d guess_up(const PlaneMap& map, const Trajectory& trajectory) {
+    Eigen::Vector3d held = Eigen::Vector3d::Zero();
+    for (const StampedPose& pose : trajectory) held -= pose.world_from_camera.linear().col(1);
+    held = held.norm() > 1e-6 ? held.normalized().eval() : Eigen::Vector3d(0, -1, 0);
+    const MapPlane* best = nullptr;
+    for (const MapPlane& plane : map.planes) {
+        const bool level = std::abs(plane.region.plane.normal.dot(held)) > std::cos(std::numbers::pi / 6);
+        if (level && (best == nullptr || plane.area > best->area)) best = &plane;
+    }
+    if (best == nullptr) return held;
+    const Eigen::Vector3d normal = best->region.plane.normal;
+    return normal.dot(held) > 0 ? normal : (-normal).eval();
+}
+
+std::string overhead_svg(const PlaneMap& map, const Trajectory& trajectory,
+                         std::optional<Eigen::Vector3d> up) {
+    const Eigen::Matrix3d level = level_from_world(map, up.value_or(guess_up(map, trajectory)).normalized());
+    const auto height = [&](const MapPlane* plane) {
+        return level.row(2).dot(plane->region.box.frame_from_box.translation());
+    };
+    std::vector<const MapPlane*> surfaces, walls;
+    std::vector<Eigen::Vector2d> extent;
+    for (const MapPlane& plane : map.planes) {
+        const double upward = level.row(2).dot(plane.region.plane.normal);
+        if (upward < -0.35) continue;
+        (upward > 0.35 ? surfaces : walls).push_back(&plane);
+        for (const auto& ring : polygon_of(plane))
+            for (const auto& p : ring) extent.push_back((level * p).head<2>());
+    }
+    for (const StampedPose& pose : trajectory)
+        extent.push_back((level * pose.world_from_camera.translation()).head<2>());
+    std::stable_sort(surfaces.begin(), surfaces.end(),
+                     [&](auto* a, auto* b) { return height(a) < height(b); });
+
+    const Fit fit(extent);
+    const auto project = [&](const Eigen::Vector3d& p) { return fit((level * p).head<2>()); };
+    std::string shapes, labels;
+    Numbers numbers;
+    for (const MapPlane* plane : surfaces) {
+        const Rgb color = plane_color(plane->id);
+        shapes += "<path d=\"" + path(polygon_of(*plane), project) + "\" fill-rule=\"evenodd\" fill=\"" +
+                  css(color) + "\" fill-opacity=\"0.55\" stroke=\"" + css(color, 0.6) +
+                  "\" stroke-width=\"0.8\"/>\n";
+    }
+    for (const MapPlane* plane : walls) {
+        const Eigen::Vector3d along = level.row(2).transpose().cross(plane->region.plane.normal);
+        shapes += "<path d=\"" + wall_lines(polygon_of(*plane), along, project) +
+                  "\" fill=\"none\" stroke=\"" + css(plane_color(plane->id), 0.75) +
+                  "\" stroke-width=\"4\"/>\n";
+    }
+    for (const auto* group : {&walls, &surfaces}) {
+        for (const MapPlane* plane : *group) {
+            if (plane->area < kNumberedArea_m2) continue;
+            labels += numbers.place(plane->id, project(plane->region.box.frame_from_box.translation()));
+        }
+    }
+    return page("Planes seen from above",
+                shapes + trajectory_line(trajectory, project) + labels + scale_bar(fit.scale()));
+}
+
+namespace {
+
+/// A camera outside a bounding sphere.
+struct View {
+    Eigen::Vector3d eye;
+    Eigen::Matrix3d view_from_world;  ///< x right, y up, z towards the viewer
+
+    Eigen::Vector2d operator()(const Eigen::Vector3d& p) const {
+        const Eigen::Vector3d q = view_from_world * (p - eye);
+        return q.head<2>() / -q.z();
+    }
+    bool is_in_front_of(const Plane& plane) const { return plane.signed_distance(eye) > 0; }
+};
+
+View looking_from(double azimuth, const Eigen::Matrix3d& level, const Eigen::Vector3d& centre,
+                  double radius) {
+    constexpr double kElevation = 50 * std::numbers::pi / 180;
+    const Eigen::Vector3d in_level(std::cos(kElevation) * std::cos(azimuth),
+                                   std::cos(kElevation) * std::sin(azimuth), std::sin(kElevation));
+    View view;
+    const Eigen::Vector3d back = level.transpose() * in_level;
+    view.eye = centre + 3.2 * radius * back;
+    const Eigen::Vector3d right = level.row(2).transpose().cross(back).normalized();
+    view.view_from_world << right.transpose(), back.cross(right).transpose(), back.transpose();
+    return view;
+}
+
+/// The corner view that shows the most area.
+View best_view(const PlaneMap& map, const Eigen::Matrix3d& level) {
+    Eigen::Vector3d low = Eigen::Vector3d::Constant(1e300), high = -low;
+    for (const MapPlane& plane : map.planes) {
+        for (const Eigen::Vector3d& corner : plane.region.box.face()) {
+            low = low.cwiseMin(corner);
+            high = high.cwiseMax(corner);
+        }
+    }
+    if (map.planes.empty()) low = high = Eigen::Vector3d::Zero();
+    const Eigen::Vector3d centre = 0.5 * (low + high);
+    const double radius = std::max(0.5, 0.5 * (high - low).norm());
+    View best;
+    double best_area = -1;
+    for (int i = 0; i < 8; ++i) {
+        const View view = looking_from((i + 0.3) * std::numbers::pi / 4, level, centre, radius);
+        double area = 0;
+        for (const MapPlane& plane : map.planes) {
+            const Eigen::Vector3d towards = view.eye - plane.region.box.frame_from_box.translation();
+            area += plane.area * std::max(0.0, plane.region.plane.normal.dot(towards.normalized()));
+        }
+        if (area > best_area) {
+            best = view;
+            best_area = area;
+        }
+    }
+    return best;
+}
+
+struct Drawn {
+    const MapPlane* plane;
+    Polygon3 rings;
+    Eigen::Vector2d low, high;  ///< on the page
+    double depth;               ///< of the centre
+};
+
+/// True when a's plane separates the two and b is on the viewer's side, or b's does and a is beyond.
+bool is_behind(const Drawn& a, const Drawn& b, const Eigen::Vector3d& eye) {
+    constexpr double kSlack_m = 0.03;
+    const auto all_on_side = [&](const Polygon3& rings, const Plane& plane, double side) {
+        for (const auto& ring : rings)
+            for (const auto& p : ring)
+                if (side * plane.signed_distance(p) < -kSlack_m) return false;
+        return true;
+    };
+    const Plane &plane_a = a.plane->region.plane, &plane_b = b.plane->region.plane;
+    return all_on_side(b.rings, plane_a, plane_a.signed_distance(eye) > 0 ? 1 : -1) ||
+           all_on_side(a.rings, plane_b, plane_b.signed_distance(eye) > 0 ? -1 : 1);
+}
+
+/// Order for the painter's algorithm, farthest first: what lies behind another plane comes before it; where
+/// planes cross or overlap in a circle, the farther centre does.
+std::vector<Drawn> painters_order(std::vector<Drawn> planes, const Eigen::Vector3d& eye) {
+    std::stable_sort(planes.begin(), planes.end(), [](auto& a, auto& b) { return a.depth > b.depth; });
+    const std::size_t n = planes.size();
+    std::vector<std::vector<std::size_t>> in_front_of(n);
+    std::vector<int> waits_for(n, 0);
+    for (std::size_t i = 0; i < n; ++i) {
+        for (std::size_t j = i + 1; j < n; ++j) {
+            if ((planes[i].low.array() > planes[j].high.array()).any()) continue;
+            if ((planes[j].low.array() > planes[i].high.array()).any()) continue;
+            const bool i_behind = is_behind(planes[i], planes[j], eye),
+                       j_behind = is_behind(planes[j], planes[i], eye);
+            if (i_behind == j_behind) continue;
+            in_front_of[i_behind ? i : j].push_back(i_behind ? j : i);
+            ++waits_for[i_behind ? j : i];
+        }
+    }
+    std::vector<Drawn> order;
+    std::vector<bool> done(n, false);
+    while (order.size() < n) {
+        std::size_t next = n;
+        for (std::size_t i = 0; i < n && (next == n || waits_for[next] > 0); ++i) {
+            if (!done[i] && (next == n || waits_for[i] <= 0)) next = i;
+        }
+        done[next] = true;
+        for (const std::size_t i : in_front_of[next]) --waits_for[i];
+        order.push_back(planes[next]);
+    }
+    return order;
+}
+
+}  // namespace
+
+std::string perspective_svg(const PlaneMap& map, const Trajectory& trajectory,
+                            std::optional<Eigen::Vector3d> up) {
+    const Eigen::Matrix3d level = level_from_world(map, up.value_or(guess_up(map, trajectory)).normalized());
+    const View view = best_view(map, level);
+    std::vector<Eigen::Vector2d> extent;
+    std::vector<const MapPlane*> visible;
+    for (const MapPlane& plane : map.planes) {
+        if (!view.is_in_front_of(plane.region.plane)) continue;
+        visible.push_back(&plane);
+        for (const auto& ring : polygon_of(plane))
+            for (const auto& p : ring) extent.push_back(view(p));
+    }
+    const Fit fit(extent);
+    const auto project = [&](const Eigen::Vector3d& p) { return fit(view(p)); };
+
+    std::vector<Drawn> drawn;
+    for (const MapPlane* plane : visible) {
+        Drawn d{plane, polygon_of(*plane), Eigen::Vector2d::Constant(1e300),
+                Eigen::Vector2d::Constant(-1e300),
+                (plane->region.box.frame_from_box.translation() - view.eye).norm()};
+        for (const auto& ring : d.rings) {
+            for (const auto& p : ring) {
+                d.low = d.low.cwiseMin(project(p));
+                d.high = d.high.cwiseMax(project(p));
+            }
+        }
+        drawn.push_back(std::move(d));
+    }
+
+    const Eigen::Vector3d light = (level.transpose() * Eigen::Vector3d(0.35, 0.2, 0.9)).normalized();
+    std::string body;
+    std::vector<int> painted;
+    const auto is_painted = [&](int id) {
+        return std::find(painted.begin(), painted.end(), id) != painted.end();
+    };
+    for (const Drawn& d : painters_order(std::move(drawn), view.eye)) {
+        const Rgb color = plane_color(d.plane->id);
+        const double shade = 0.72 + 0.33 * std::abs(light.dot(d.plane->region.plane.normal));
+        body += "<path d=\"" + path(d.rings, project) + "\" fill-rule=\"evenodd\" fill=\"" +
+                css(color, shade) + "\" stroke=\"" + css(color, 0.6) +
+                "\" stroke-width=\"0.8\" stroke-linejoin=\"round\"/>\n";
+        painted.push_back(d.plane->id);
+        // A line belongs to the nearer of its planes: what is painted later covers it.
+        for (const IntersectionLine& line : map.lines) {
+            if (line.plane_a != d.plane->id && line.plane_b != d.plane->id) continue;
+            if (!is_painted(line.plane_a) || !is_painted(line.plane_b)) continue;
+            body += "<path d=\"" + move_to(project(line.from)) + line_to(project(line.to)) +
+                    "\" stroke=\"#222\" stroke-width=\"1.8\"/>\n";
+        }
+    }
+    for (const IntersectionPoint& p : map.points) {
+        if (!std::all_of(p.planes.begin(), p.planes.end(), is_painted)) continue;
+        const Eigen::Vector2d at = project(p.position);
+        body += "<circle cx=\"" + text(at.x()) + "\" cy=\"" + text(at.y()) + "\" r=\"3.5\" fill=\"#222\"/>\n";
+    }
+    return page("Planes in perspective", body + trajectory_line(trajectory, project));
+}
+
+}  // namespace planemap

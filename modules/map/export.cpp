@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "map/export.hpp"
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "map/triangulation.hpp"
+
+namespace planemap {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double value, double per_unit = 1e6) {
+    const double rounded = std::round(value * per_unit) / per_unit;
+    if (!std::isfinite(rounded)) return nullptr;
+    return rounded == 0 ? 0.0 : rounded;  // no negative zero
+}
+
+Json vector(const Eigen::Vector3d& v, double per_unit = 1e6) {
+    return {number(v.x(), per_unit), number(v.y(), per_unit), number(v.z(), per_unit)};
+}
+
+Json plane_json(const MapPlane& plane) {
+    const PlanarRegion& region = plane.region;
+    Json corners = Json::array(), outline = Json::array();
+    for (const Eigen::Vector3d& corner : region.box.corners()) corners.push_back(vector(corner));
+    for (const Ring& ring : region.outline.rings) {
+        Json points = Json::array();
+        for (const Eigen::Vector2d& v : ring)
+            points.push_back(vector(region.box.frame_from_box * Eigen::Vector3d(v.x(), v.y(), 0)));
+        outline.push_back(std::move(points));
+    }
+    Json json;
+    json["id"] = plane.id;
+    json["label"] = label_name(plane.label);
+    json["normal"] = vector(region.plane.normal, 1e9);
+    json["d"] = number(region.plane.d);
+    json["inliers"] = number(region.moments.count, 1);
+    json["rms"] = number(region.rms);
+    json["area"] = number(plane.area);
+    json["center"] = vector(region.box.frame_from_box.translation());
+    json["box_corners"] = std::move(corners);
+    json["outline"] = std::move(outline);
+    json["keyframes"] = plane.keyframes;
+    return json;
+}
+
+/// A JSON array with one element a line.
+template <typename Items, typename ToJson>
+std::string lines_of(const Items& items, ToJson to_json) {
+    std::string text = "[";
+    for (std::size_t i = 0; i < items.size(); ++i) {
+        text += i == 0 ? "\n  " : ",\n  ";
+        text += to_json(items[i]).dump();
+    }
+    return text + (items.empty() ? "]" : "\n ]");
+}
+
+void put(std::string& bytes, const auto& value) {
+    std::array<char, sizeof value> raw;
+    std::memcpy(raw.data(), &value, sizeof value);
+    if constexpr (std::endian::native == std::endian::big) std::reverse(raw.begin(), raw.end());
+    bytes.append(raw.data(), raw.size());
+}
+
+}  // namespace
+
+const char* label_name(PlaneLabel label) {
+    switch (label) {
+        case PlaneLabel::kFloor:
+            return "floor";
+        case PlaneLabel::kCeiling:
+            return "ceiling";
+        case PlaneLabel::kWall:
+            return "wall";
+        case PlaneLabel::kHorizontal:
+            return "horizontal";
+        case PlaneLabel::kOther:
+            return "other";
+        case PlaneLabel::kUnknown:
+            break;
+    }
+    return "unknown";
+}
+
+Rgb plane_color(int id) {
+    // Hues a golden angle apart, in three shades: neighbouring ids never look alike.
+    const double hue = std::fmod(id * 0.6180339887498949, 1.0) + (id < 0 ? 1 : 0);
+    const double value = std::array{0.92, 0.78, 0.85}[static_cast<std::size_t>(std::abs(id % 3))];
+    const auto channel = [&](double offset) {
+        const double wave = 0.5 + 0.5 * std::cos(2 * std::numbers::pi * (hue - offset));
+        return static_cast<std::uint8_t>(std::lround(255 * value * (0.42 + 0.58 * wave)));
+    };
+    return {channel(0), channel(1.0 / 3), channel(2.0 / 3)};
+}
+
+std::string planes_json(const PlaneMap& map) {
+    std::string text = "{\n \"format\": \"planemap planes 1\",\n";
+    text +=
+        " \"units\": \"metres; world frame; n.p + d = 0 with the normal towards where the plane was seen "
+        "from\",\n";
+    text += " \"utime\": " + std::to_string(map.utime) + ",\n \"revision\": " + std::to_string(map.revision) +
+            ",\n";
+    text += " \"planes\": " + lines_of(map.planes, plane_json) + ",\n";
+    text += " \"lines\": " + lines_of(map.lines, [](const IntersectionLine& line) {
+                return Json{{"planes", {line.plane_a, line.plane_b}},
+                            {"from", vector(line.from)},
+                            {"to", vector(line.to)}};
+            });
+    text += ",\n \"points\": " + lines_of(map.points, [](const IntersectionPoint& point) {
+                return Json{{"planes", point.planes}, {"position", vector(point.position)}};
+            });
+    return text + "\n}\n";
+}
+
+std::string planes_ply(const PlaneMap& map) {
+    std::string vertices, faces;
+    int vertex_count = 0, face_count = 0;
+    for (const MapPlane& plane : map.planes) {
+        const Triangulation triangulation = triangulate(plane.region.outline);
+        const Rgb color = plane_color(plane.id);
+        for (const Eigen::Vector2d& v : triangulation.vertices) {
+            const Eigen::Vector3d p = plane.region.box.frame_from_box * Eigen::Vector3d(v.x(), v.y(), 0);
+            for (const double value : {p.x(), p.y(), p.z()}) put(vertices, static_cast<float>(value));
+            for (int i = 0; i < 3; ++i) put(vertices, static_cast<float>(plane.region.plane.normal[i]));
+            for (const std::uint8_t value : {color.r, color.g, color.b}) put(vertices, value);
+        }
+        for (const auto& triangle : triangulation.triangles) {
+            put(faces, std::uint8_t{3});
+            for (const int index : triangle) put(faces, static_cast<std::int32_t>(vertex_count + index));
+        }
+        vertex_count += static_cast<int>(triangulation.vertices.size());
+        face_count += static_cast<int>(triangulation.triangles.size());
+    }
+    return "ply\nformat binary_little_endian 1.0\ncomment planemap: planes of a map, metres\nelement "
+           "vertex " +
+           std::to_string(vertex_count) +
+           "\nproperty float x\nproperty float y\nproperty float z\nproperty float nx\nproperty float ny\n"
+           "property float nz\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nelement face " +
+           std::to_string(face_count) + "\nproperty list uchar int vertex_indices\nend_header\n" + vertices +
+           faces;
+}
+
+}  // namespace planemap

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "map/intersections.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+namespace planemap {
+
+namespace {
+
+struct Line {
+    Eigen::Vector3d origin, direction;
+};
+
+struct Interval {
+    double low, high;
+};
+using Intervals = std::vector<Interval>;
+
+std::optional<Line> common_line(const Plane& a, const Plane& b, double min_angle_rad) {
+    const Eigen::Vector3d direction = a.normal.cross(b.normal);
+    if (direction.norm() < std::sin(min_angle_rad)) return std::nullopt;
+    Eigen::Matrix3d rows;
+    rows << a.normal.transpose(), b.normal.transpose(), direction.normalized().transpose();
+    return Line{rows.inverse() * Eigen::Vector3d(-a.d, -b.d, 0), direction.normalized()};
+}
+
+/// Smallest distance from a plane to a box.
+double distance_to(const Plane& plane, const Box& box) {
+    const Eigen::Vector3d in_box = box.frame_from_box.linear().transpose() * plane.normal;
+    const double centre = std::abs(plane.signed_distance(box.frame_from_box.translation()));
+    return std::max(0.0, centre - in_box.cwiseAbs().dot(box.half_extents));
+}
+
+/// Sorted, and joined where less than `bridge` apart.
+Intervals joined(Intervals intervals, double bridge) {
+    std::sort(intervals.begin(), intervals.end(), [](auto& a, auto& b) { return a.low < b.low; });
+    Intervals result;
+    for (const Interval& next : intervals) {
+        if (!result.empty() && next.low <= result.back().high + bridge) {
+            result.back().high = std::max(result.back().high, next.high);
+        } else {
+            result.push_back(next);
+        }
+    }
+    return result;
+}
+
+/// Where along the line the region is within the gap of it: the outline is cut by lines parallel to it.
+Intervals along_line(const PlanarRegion& region, const Line& line, double gap) {
+    const Pose box_from_world = region.box.frame_from_box.inverse(Eigen::Isometry);
+    const Eigen::Vector2d origin = (box_from_world * line.origin).head<2>();
+    const Eigen::Vector2d along = (box_from_world.linear() * line.direction).head<2>().normalized();
+    const Eigen::Vector2d across(-along.y(), along.x());
+    constexpr int kCuts = 4;  // on each side
+    Intervals intervals;
+    std::vector<double> crossings;
+    for (int cut = -kCuts; cut <= kCuts; ++cut) {
+        const double height = gap * cut / kCuts;
+        crossings.clear();
+        for (const Ring& ring : region.outline.rings) {
+            for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
+                const double a = across.dot(ring[j] - origin) - height;
+                const double b = across.dot(ring[i] - origin) - height;
+                if ((a > 0) == (b > 0)) continue;
+                crossings.push_back(along.dot(ring[j] + a / (a - b) * (ring[i] - ring[j]) - origin));
+            }
+        }
+        std::sort(crossings.begin(), crossings.end());
+        for (std::size_t k = 0; k + 1 < crossings.size(); k += 2)
+            intervals.push_back({crossings[k], crossings[k + 1]});
+    }
+    return joined(std::move(intervals), gap);
+}
+
+Intervals overlap(const Intervals& a, const Intervals& b) {
+    Intervals result;
+    for (const Interval& x : a) {
+        for (const Interval& y : b) {
+            const Interval both{std::max(x.low, y.low), std::min(x.high, y.high)};
+            if (both.low < both.high) result.push_back(both);
+        }
+    }
+    return result;
+}
+
+}  // namespace
+
+std::vector<IntersectionLine> intersection_lines(const MapPlane& a, const MapPlane& b,
+                                                 const AdjacencyRules& rules) {
+    const MapPlane &first = a.id < b.id ? a : b, &second = a.id < b.id ? b : a;
+    const PlanarRegion &region_a = first.region, &region_b = second.region;
+    // The common line lies in both planes, so neither box may be further from the other's plane.
+    const double reach =
+        region_a.box.half_extents.norm() + region_b.box.half_extents.norm() + 2 * rules.gap_m;
+    if ((region_a.box.frame_from_box.translation() - region_b.box.frame_from_box.translation()).norm() >
+            reach ||
+        distance_to(region_a.plane, region_b.box) > rules.gap_m ||
+        distance_to(region_b.plane, region_a.box) > rules.gap_m) {
+        return {};
+    }
+    const auto line = common_line(region_a.plane, region_b.plane, rules.min_angle_rad);
+    if (!line) return {};
+    const Intervals on_first = along_line(region_a, *line, rules.gap_m);
+    if (on_first.empty()) return {};
+    std::vector<IntersectionLine> lines;
+    for (const Interval& piece : overlap(on_first, along_line(region_b, *line, rules.gap_m))) {
+        if (piece.high - piece.low < rules.min_length_m) continue;
+        lines.push_back({first.id, second.id, line->origin + piece.low * line->direction,
+                         line->origin + piece.high * line->direction});
+    }
+    return lines;
+}
+
+std::optional<IntersectionPoint> intersection_point(const MapPlane& a, const MapPlane& b, const MapPlane& c,
+                                                    const AdjacencyRules& rules) {
+    Eigen::Matrix3d rows;
+    rows << a.region.plane.normal.transpose(), b.region.plane.normal.transpose(),
+        c.region.plane.normal.transpose();
+    // The volume spanned by the normals: small when the three planes nearly share a line.
+    if (std::abs(rows.determinant()) < std::pow(std::sin(rules.min_angle_rad), 2)) return std::nullopt;
+    IntersectionPoint point;
+    point.position = rows.inverse() * -Eigen::Vector3d(a.region.plane.d, b.region.plane.d, c.region.plane.d);
+    for (const MapPlane* plane : {&a, &b, &c}) {
+        if (distance(plane->region, point.position) > rules.gap_m) return std::nullopt;
+    }
+    point.planes = {a.id, b.id, c.id};
+    std::sort(point.planes.begin(), point.planes.end());
+    return point;
+}
+
+}  // namespace planemap

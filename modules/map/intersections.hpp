@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where planes of the map meet (paper section 2.3).
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/plane_map.hpp"
+
+namespace planemap {
+
+/// When two planes count as adjacent.
+struct AdjacencyRules {
+    double gap_m = 0.15;            ///< each outline comes this near to the common line
+    double min_angle_rad = 0.2618;  ///< flatter pairs have no well-defined line
+    double min_length_m = 0.15;     ///< shorter pieces of the line are left out
+};
+
+/// The pieces of the common line of two planes that lie within the gap of both outlines, in order along the
+/// line; empty for planes that are nearly parallel or not adjacent. An outline that is broken (a door in a
+/// wall) breaks the line there too.
+std::vector<IntersectionLine> intersection_lines(const MapPlane& a, const MapPlane& b,
+                                                 const AdjacencyRules& rules);
+
+/// The common point of three planes, if it is well-defined and within the gap of all three outlines.
+std::optional<IntersectionPoint> intersection_point(const MapPlane& a, const MapPlane& b, const MapPlane& c,
+                                                    const AdjacencyRules& rules);
+
+}  // namespace planemap

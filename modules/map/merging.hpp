@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// When two planar regions are the same plane of the world: the rules of paper section 2.3.
+#pragma once
+
+#include <optional>
+
+#include "core/box.hpp"
+
+namespace planemap {
+
+/// Thresholds of paper section 2.3.
+struct MergeRules {
+    double angle_rad = 0.1745;  ///< between the normals; opposite sides of a wall differ by pi
+    double distance_m = 0.05;   ///< between the planes, where the regions are
+    double gap_m = 0.5;         ///< between the boxes, within the plane
+};
+
+/// How one plane lies to another.
+struct PlaneRelation {
+    double angle_rad = 0;   ///< between the normals, in [0, pi]
+    double distance_m = 0;  ///< RMS distance between the planes over the overlap of the boxes; of boxes that
+                            ///< do not overlap, midway between their nearest points
+    double gap_m = 0;       ///< between the boxes within the plane, 0 when they overlap
+};
+
+/// Compares two regions by planes and boxes. It is symmetric, and it measures where both regions are:
+/// at the origin, two metres of lever arm would turn 2 deg into 7 cm. Both planes are looked at along their
+/// mean normal, so it says something for angles well below a right angle only.
+PlaneRelation relate(const Plane& plane_a, const Box& box_a, const Plane& plane_b, const Box& box_b);
+
+/// The relation when all three rules hold, nothing otherwise.
+std::optional<PlaneRelation> same_plane(const Plane& plane_a, const Box& box_a, const Plane& plane_b,
+                                        const Box& box_b, const MergeRules& rules);
+
+}  // namespace planemap

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The pose of a camera against a keyframe from feature points, surfaces, planes and a prediction.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/camera.hpp"
+
+namespace planemap {
+
+/// A keyframe's point seen in the current image.
+struct PointTerm {
+    Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< keyframe camera frame, metres
+    Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  ///< where the current colour image shows it
+    double pixel_sigma = 1;                           ///< pixels
+    double inverse_depth = 0;        ///< 1 / depth at that pixel in the current depth image, 1/m; 0: unknown
+    double inverse_depth_sigma = 1;  ///< of inverse_depth against the point's, 1/m
+};
+
+/// A cost 0.5 x' information x + gradient' x in the small motion x of the camera about `at`:
+/// camera_from_keyframe = pose_from_twist(x) * at.
+struct QuadraticTerm {
+    Pose at = Pose::Identity();  ///< camera_from_keyframe
+    Matrix6d information = Matrix6d::Zero();
+    Twist gradient = Twist::Zero();
+};
+
+/// What align() minimises. The unknowns are camera_from_keyframe at the depth image's time and the time from
+/// the depth image to the colour image; features are seen at the colour image's time.
+struct Alignment {
+    PinholeCamera camera;
+    std::span<const PointTerm> points;
+    std::vector<QuadraticTerm> quadratics;
+    Twist velocity = Twist::Zero();  ///< d/dt of the camera: camera(t + s) = pose_from_twist(s v) camera(t)
+    double color_offset_s = 0;       ///< expected time of the colour image after the depth image
+    double color_offset_sigma_s = 0.01;
+    double loss_scale = 2;     ///< sigmas at which the loss halves a residual's weight (Student-t like)
+    double inlier_sigmas = 3;  ///< residuals beyond are outliers in the result
+};
+
+struct AlignmentResult {
+    Pose camera_from_keyframe = Pose::Identity();
+    double color_offset_s = 0;
+    Matrix6d information = Matrix6d::Zero();  ///< of the small motion x, points and quadratics together
+    std::vector<char> inlier;                 ///< one per point
+    int inliers = 0;
+    double residual_px = 0;  ///< RMS reprojection error of the inliers, pixels
+    bool converged = false;  ///< the last step was small and all values are finite
+};
+
+/// Gauss-Newton with a heavy-tailed weight on the points, from `initial`.
+AlignmentResult align(const Alignment& alignment, const Pose& initial, int max_iterations = 20);
+
+/// Residuals of one point in sigmas (u, v, inverse depth; the last is 0 when unknown) at
+/// camera_from_keyframe, and their derivative by x (see QuadraticTerm). False when the point is behind the
+/// camera.
+bool point_residual(const PinholeCamera& camera, const PointTerm& term, const Pose& camera_from_keyframe,
+                    Eigen::Vector3d& residual, Eigen::Matrix<double, 3, 6>* jacobian = nullptr);
+
+}  // namespace planemap

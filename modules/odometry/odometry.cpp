@@ -1,0 +1,462 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "odometry/odometry.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+#include "odometry/features.hpp"
+#include "odometry/known_keyframes.hpp"
+#include "odometry/ransac.hpp"
+#include "odometry/tracker.hpp"
+
+namespace planemap {
+namespace {
+
+constexpr double kUsual = 0.01;          // metres and radians by which a prediction is off at any rate
+constexpr int kRelocalisedInliers = 20;  // matched features that make a place known again
+constexpr int kMinSurfaceCells = 40;     // for a keyframe without texture
+constexpr double kStillPredicted = 0.3;  // seconds without a pose after which depth alone is not followed
+
+double seconds(std::int64_t microseconds) {
+    return static_cast<double>(microseconds) * 1e-6;
+}
+
+void check(const OdometryFrame& frame) {
+    if (!frame.depth || !frame.camera)
+        throw std::invalid_argument("OdometryFrame: depth and camera are needed");
+    const PinholeCamera& camera = frame.camera->color;
+    const auto fits = [&](const auto& image) {
+        return image.width == camera.width && image.height == camera.height &&
+               image.pixels.size() ==
+                   static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
+    };
+    if (!fits(*frame.depth))
+        throw std::invalid_argument("OdometryFrame: depth is not of the colour camera's size; register it");
+    if (frame.gray && !fits(*frame.gray))
+        throw std::invalid_argument("OdometryFrame: gray is not of the colour camera's size");
+}
+
+/// Where a frame is, and how it is known.
+struct Located {
+    Track track;
+    int keyframe_id = -1;
+    Pose odom_from_keyframe = Pose::Identity();
+    bool relocalised = false;  ///< against a remembered keyframe that can no longer be tracked against
+
+    Pose keyframe_from_camera() const { return track.alignment.camera_from_keyframe.inverse(); }
+    Pose odom_from_camera() const { return orthonormalised(odom_from_keyframe * keyframe_from_camera()); }
+    /// Small motions of keyframe_from_camera in the camera frame are those of camera_from_keyframe reversed.
+    Matrix6d covariance() const { return track.alignment.information.ldlt().solve(Matrix6d::Identity()); }
+};
+
+}  // namespace
+
+class Odometry::State {
+  public:
+    explicit State(const OdometryOptions& options) : options_(options), known_(options.max_known_keyframes) {}
+
+    OdometryResult process(const OdometryFrame& frame);
+
+  private:
+    View make_view(const OdometryFrame& frame) const;
+    Guess predict(std::int64_t utime, const LocalKeyframe& keyframe, bool moving) const;
+    std::optional<Located> locate(const View& view);
+    std::optional<Track> second_chances(const View& view, const Guess& better) const;
+    std::optional<Located> relocalise(const View& view);
+
+    void follow(const View& view, const Located& located);
+    void remember_flow(View& view, const Track& track);
+    bool wants_keyframe(const View& view, const Located& located) const;
+    std::optional<std::size_t> other_keyframe(const View& view, const Located& located, Track& track) const;
+    std::optional<Keyframe> change_keyframe(View& view, const Located& located);
+    std::optional<Keyframe> begin(View& view, const Pose& odom_from_camera);
+    Keyframe add_keyframe(View& view, LocalKeyframe local, const Pose& odom_from_camera);
+    LocalKeyframe make_local(const View& view) const;
+
+    LocalKeyframe& current() { return local_[current_]; }
+    const LocalKeyframe& current() const { return local_[current_]; }
+
+    OdometryOptions options_;
+    CameraInfo camera_;
+    int next_id_ = 0;
+    std::vector<LocalKeyframe> local_;  ///< in order of use, the newest last
+    std::size_t current_ = 0;           ///< the one tracked against
+    KnownKeyframes known_;
+
+    std::int64_t utime_ = 0;       ///< of the last frame
+    std::int64_t pose_utime_ = 0;  ///< of the last frame with a pose
+    Pose odom_from_camera_ = Pose::Identity();
+    Twist velocity_ = Twist::Zero();  ///< per second, camera frame, see Alignment::velocity
+    int lost_frames_ = 0;
+    DenseReference last_dense_;  ///< of the last frame with a pose
+    FlowPyramid last_pyramid_;   ///< of the last frame, when it was tracked by features
+    std::vector<cv::Point2f> last_pixels_;
+    std::vector<char> last_inlier_;
+    double last_color_offset_s_ = 0;
+};
+
+View Odometry::State::make_view(const OdometryFrame& frame) const {
+    View view;
+    view.utime = frame.utime;
+    view.gray = frame.gray;
+    view.depth = frame.depth;
+    view.camera = frame.camera;
+    if (frame.gray) {
+        if (frame.color_utime != 0) view.color_offset_s = seconds(frame.color_utime - frame.utime);
+        view.pyramid =
+            make_flow_pyramid(*frame.gray, options_.flow_wide_levels, options_.flow_window_px, false);
+    }
+    view.samples = sample_depth(*frame.depth, frame.camera->color, *frame.camera, options_.surface_stride_px);
+    for (const PlanarRegion& region : frame.regions)
+        if (is_valid(region)) view.regions.push_back(region);
+    return view;
+}
+
+/// Constant velocity, or standing still when not `moving`.
+Guess Odometry::State::predict(std::int64_t utime, const LocalKeyframe& keyframe, bool moving) const {
+    Guess guess;
+    const double elapsed = std::clamp(seconds(utime - pose_utime_), 0.0, 10.0);
+    const Twist motion = velocity_ * (moving ? std::min(elapsed, options_.max_prediction_s) : 0.0);
+    guess.camera_from_keyframe =
+        pose_from_twist(motion) * odom_from_camera_.inverse() * keyframe.odom_from_keyframe;
+    const double off = kUsual + options_.acceleration * elapsed * elapsed;
+    const double turned = kUsual + options_.angular_acceleration * elapsed * elapsed;
+    guess.information.diagonal() << Eigen::Vector3d::Constant(1 / (off * off)),
+        Eigen::Vector3d::Constant(1 / (turned * turned));
+    if (!moving) return guess;
+    guess.velocity = velocity_;
+    guess.last_from_keyframe = odom_from_camera_.inverse() * keyframe.odom_from_keyframe;
+    if (elapsed <= options_.max_prediction_s) guess.elapsed_s = elapsed;
+    return guess;
+}
+
+OdometryResult Odometry::State::process(const OdometryFrame& frame) {
+    check(frame);
+    const bool other_camera = !local_.empty() && !(*frame.camera == camera_);
+    if (local_.empty() || other_camera) frame.camera->validate();
+    View view = make_view(frame);
+    OdometryResult result;
+    OdometryEstimate& estimate = result.estimate;
+    estimate.utime = estimate.pose_utime = frame.utime;
+    const bool restart = local_.empty() || other_camera || frame.utime < utime_;
+    utime_ = frame.utime;
+    if (other_camera) known_.clear();
+    if (restart) {
+        result.keyframe = begin(view, odom_from_camera_);
+        if (!result.keyframe) {
+            local_.clear();
+            return result;
+        }
+        estimate.status = TrackingStatus::kTracked;
+        estimate.odom_from_camera = odom_from_camera_;
+        estimate.keyframe_id = result.keyframe->id;
+        estimate.features = estimate.inliers = static_cast<int>(current().points.size());
+        return result;
+    }
+
+    const std::optional<Located> located = locate(view);
+    if (!located) {
+        ++lost_frames_;
+        velocity_.setZero();
+        last_pyramid_ = {};
+        if (lost_frames_ >= options_.max_lost_frames) result.keyframe = begin(view, odom_from_camera_);
+        if (!result.keyframe) return result;
+        estimate.status = TrackingStatus::kTracked;
+        estimate.odom_from_camera = odom_from_camera_;
+        estimate.keyframe_id = result.keyframe->id;
+        return result;
+    }
+    estimate.status = located->track.degenerate ? TrackingStatus::kDegenerate : TrackingStatus::kTracked;
+    estimate.odom_from_camera = located->odom_from_camera();
+    estimate.keyframe_id = located->keyframe_id;
+    estimate.keyframe_from_camera = located->keyframe_from_camera();
+    estimate.covariance = located->covariance();
+    estimate.features = located->track.tried;
+    estimate.inliers = located->track.inliers;
+    estimate.residual_px = located->track.alignment.residual_px;
+    follow(view, *located);
+    if (wants_keyframe(view, *located))
+        result.keyframe = change_keyframe(view, *located);
+    else
+        remember_flow(view, located->track);
+    return result;
+}
+
+std::optional<Located> Odometry::State::locate(const View& view) {
+    const bool moving = lost_frames_ == 0;
+    Guess guess = predict(view.utime, current(), moving);
+    std::optional<Track> track;
+    if (!current().points.empty() && !view.pyramid.empty()) {
+        std::vector<cv::Point2f> pixels;
+        for (const TrackPoint& point : current().points) pixels.push_back(point.pixel);
+        FlowSearch search{&current().pyramid, &pixels, nullptr, options_.flow_levels};
+        track = track_points(options_, current(), view, guess, search);
+        if (!track) {
+            guess = coarse_guess(options_, current(), view, guess, last_dense_,
+                                 current().odom_from_keyframe.inverse() * odom_from_camera_);
+            track = second_chances(view, guess);
+        }
+        if (!track)
+            if (std::optional<Located> known = relocalise(view)) return known;
+    }
+    if (!track && seconds(view.utime - pose_utime_) < kStillPredicted)
+        track = track_surface(options_, current(), view, guess);
+    if (!track) return std::nullopt;
+    return Located{std::move(*track), current().id, current().odom_from_keyframe, false};
+}
+
+/// Flow again from a guess by the whole image: from the keyframe, then from the last frame with a pose.
+std::optional<Track> Odometry::State::second_chances(const View& view, const Guess& better) const {
+    std::vector<cv::Point2f> pixels;
+    for (const TrackPoint& point : current().points) pixels.push_back(point.pixel);
+    FlowSearch search{&current().pyramid, &pixels, nullptr, options_.flow_wide_levels};
+    std::optional<Track> track = track_points(options_, current(), view, better, search);
+    if (track || last_pyramid_.empty()) return track;
+    search = {&last_pyramid_, &last_pixels_, &last_inlier_, options_.flow_wide_levels};
+    return track_points(options_, current(), view, better, search);
+}
+
+/// The frame's descriptors against remembered keyframes; refined by flow where the keyframe is still at hand.
+std::optional<Located> Odometry::State::relocalise(const View& view) {
+    const std::vector<Feature> features =
+        describe(*view.gray, *view.depth, *view.camera, options_.max_descriptors, options_.max_depth_spread);
+    for (const KnownKeyframe* known : known_.candidates(*view.gray, options_.relocalisation_tries)) {
+        std::vector<PointTerm> terms;
+        for (const auto& [i, j] :
+             match_descriptors(known->features, features, options_.max_descriptor_distance)) {
+            const Feature &seen = known->features[static_cast<std::size_t>(i)],
+                          &here = features[static_cast<std::size_t>(j)];
+            const double z = here.point.z(), sigma = view.camera->noise.sigma(z) / (z * z);
+            terms.push_back({seen.point.cast<double>(), here.pixel.cast<double>(),
+                             2 * options_.pixel_sigma_px, 1 / z, 3 * options_.depth_sigma_scale * sigma});
+        }
+        RansacOptions ransac;
+        ransac.inlier_px = 4 * options_.pixel_sigma_px;
+        ransac.min_inliers = kRelocalisedInliers;
+        ransac.seed = options_.seed;
+        const std::optional<Pose> pose = ransac_motion(view.camera->color, terms, ransac);
+        if (!pose) continue;
+        Guess guess;
+        guess.camera_from_keyframe = *pose;
+        guess.information = Matrix6d::Identity();
+        for (std::size_t i = 0; i < local_.size(); ++i) {
+            if (local_[i].id != known->id) continue;
+            std::vector<cv::Point2f> pixels;
+            for (const TrackPoint& point : local_[i].points) pixels.push_back(point.pixel);
+            FlowSearch search{&local_[i].pyramid, &pixels, nullptr, options_.flow_levels};
+            std::optional<Track> track = track_points(options_, local_[i], view, guess, search);
+            if (!track) continue;
+            current_ = i;
+            return Located{std::move(*track), known->id, known->odom_from_keyframe, false};
+        }
+        Alignment alignment;
+        alignment.camera = view.camera->color;
+        alignment.points = terms;
+        alignment.quadratics.push_back({*pose, guess.information, Twist::Zero()});
+        Track track;
+        track.alignment = align(alignment, *pose);
+        if (!track.alignment.converged || track.alignment.inliers < kRelocalisedInliers) continue;
+        track.tried = static_cast<int>(terms.size());
+        track.inliers = track.alignment.inliers;
+        track.by_features = true;
+        return Located{std::move(track), known->id, known->odom_from_keyframe, true};
+    }
+    return std::nullopt;
+}
+
+/// Takes over the pose and the motion since the last one.
+void Odometry::State::follow(const View& view, const Located& located) {
+    const Pose odom_from_camera = located.odom_from_camera();
+    const double elapsed = seconds(view.utime - pose_utime_);
+    if (lost_frames_ > 0 || located.relocalised)
+        velocity_.setZero();
+    else if (elapsed > 0)
+        velocity_ = twist_from_pose(odom_from_camera.inverse() * odom_from_camera_) / elapsed;
+    odom_from_camera_ = odom_from_camera;
+    pose_utime_ = view.utime;
+    lost_frames_ = 0;
+    last_dense_ = make_dense_reference(view.pyramid, *view.depth, *view.camera);
+    last_color_offset_s_ =
+        located.track.by_features ? located.track.alignment.color_offset_s : view.color_offset_s;
+}
+
+void Odometry::State::remember_flow(View& view, const Track& track) {
+    last_pyramid_ = track.by_features ? std::move(view.pyramid) : FlowPyramid{};
+    last_pixels_ = track.pixels;
+    last_inlier_ = track.inlier;
+}
+
+bool Odometry::State::wants_keyframe(const View& view, const Located& located) const {
+    if (located.relocalised) return true;
+    const Pose keyframe_from_camera = located.keyframe_from_camera();
+    if (keyframe_from_camera.translation().norm() > options_.max_translation_m ||
+        rotation_angle(keyframe_from_camera) > options_.max_rotation_rad)
+        return true;
+    if (!located.track.by_features)
+        return view.gray != nullptr ||
+               located.track.inliers < options_.min_tracked_share * static_cast<double>(view.samples.size());
+    return located.track.inliers < options_.min_tracked_share * static_cast<double>(current().points.size());
+}
+
+/// Another recent keyframe that sees more of this frame, with the frame tracked against it.
+std::optional<std::size_t> Odometry::State::other_keyframe(const View& view, const Located& located,
+                                                           Track& track) const {
+    if (view.pyramid.empty()) return std::nullopt;
+    std::optional<std::size_t> best;
+    double best_share = 0.75;
+    const Pose odom_from_camera = located.odom_from_camera();
+    for (std::size_t i = 0; i < local_.size(); ++i) {
+        if (i == current_ || local_[i].points.empty()) continue;
+        const Pose camera_from_keyframe = odom_from_camera.inverse() * local_[i].odom_from_keyframe;
+        if (camera_from_keyframe.translation().norm() > 0.6 * options_.max_translation_m ||
+            rotation_angle(camera_from_keyframe) > 0.6 * options_.max_rotation_rad)
+            continue;
+        int visible = 0;
+        for (const TrackPoint& point : local_[i].points) {
+            const Eigen::Vector3d p = camera_from_keyframe * point.point;
+            visible += p.z() > 0.05 && view.camera->color.sees(view.camera->color.project(p));
+        }
+        const double share = visible / static_cast<double>(local_[i].points.size());
+        if (share <= best_share) continue;
+        best_share = share;
+        best = i;
+    }
+    if (!best) return std::nullopt;
+    const LocalKeyframe& keyframe = local_[*best];
+    Guess guess;
+    guess.camera_from_keyframe = odom_from_camera.inverse() * keyframe.odom_from_keyframe;
+    guess.information = Matrix6d::Identity() / (0.02 * 0.02);
+    guess.velocity = velocity_;
+    std::vector<cv::Point2f> pixels;
+    for (const TrackPoint& point : keyframe.points) pixels.push_back(point.pixel);
+    FlowSearch search{&keyframe.pyramid, &pixels, nullptr, options_.flow_levels};
+    std::optional<Track> found = track_points(options_, keyframe, view, guess, search);
+    const double needed = (options_.min_tracked_share + 0.1) * static_cast<double>(keyframe.points.size());
+    if (!found || found->degenerate || found->inliers < needed) return std::nullopt;
+    track = std::move(*found);
+    return best;
+}
+
+std::optional<Keyframe> Odometry::State::change_keyframe(View& view, const Located& located) {
+    Track track;
+    if (const std::optional<std::size_t> other = other_keyframe(view, located, track)) {
+        current_ = *other;
+        remember_flow(view, track);
+        // The newest last, so that it stays.
+        std::rotate(local_.begin() + static_cast<std::ptrdiff_t>(current_),
+                    local_.begin() + static_cast<std::ptrdiff_t>(current_) + 1, local_.end());
+        current_ = local_.size() - 1;
+        return std::nullopt;
+    }
+    LocalKeyframe local = make_local(view);
+    const bool better = located.relocalised ||
+                        local.points.size() > static_cast<std::size_t>(located.track.inliers) ||
+                        !located.track.by_features;
+    const bool usable = static_cast<int>(local.points.size()) >= options_.min_inliers ||
+                        local.surface.cells() >= kMinSurfaceCells;
+    if (!better || !usable) {
+        remember_flow(view, located.track);
+        return std::nullopt;
+    }
+    Keyframe keyframe = add_keyframe(view, std::move(local), located.odom_from_camera());
+    keyframe.previous_id = located.keyframe_id;
+    keyframe.previous_from_camera = located.keyframe_from_camera();
+    keyframe.covariance = located.covariance();
+    return keyframe;
+}
+
+/// A keyframe without an edge. Nothing when the frame has neither texture nor surface.
+std::optional<Keyframe> Odometry::State::begin(View& view, const Pose& odom_from_camera) {
+    velocity_.setZero();
+    lost_frames_ = 0;
+    pose_utime_ = view.utime;
+    last_dense_ = make_dense_reference(view.pyramid, *view.depth, *view.camera);
+    camera_ = *view.camera;
+    last_color_offset_s_ = view.color_offset_s;
+    LocalKeyframe local = make_local(view);
+    if (static_cast<int>(local.points.size()) < 2 * options_.min_inliers &&
+        local.surface.cells() < kMinSurfaceCells)
+        return std::nullopt;
+    local_.clear();
+    return add_keyframe(view, std::move(local), odom_from_camera);
+}
+
+LocalKeyframe Odometry::State::make_local(const View& view) const {
+    LocalKeyframe local;
+    local.utime = view.utime;
+    local.regions = view.regions;
+    local.surface = Surface(*view.depth, view.camera->color, *view.camera, options_.surface_cell_px);
+    if (!view.gray) return local;
+    const PinholeCamera& camera = view.camera->color;
+    const Pose depth_from_color_time = pose_from_twist(-last_color_offset_s_ * velocity_);
+    const CornerOptions corners{options_.max_points, options_.cell_px, options_.corner_threshold,
+                                options_.max_depth_spread};
+    for (const cv::Point2f& pixel : select_corners(*view.gray, *view.depth, *view.camera, corners)) {
+        // The corner is where it was at the colour image's time; its depth is read where it was at the depth
+        // image's.
+        double z = sound_depth(*view.depth, *view.camera, {pixel.x, pixel.y}, options_.max_depth_spread);
+        Eigen::Vector3d p = depth_from_color_time * camera.unproject(pixel.x, pixel.y, z);
+        if (!(p.z() > 0.05)) continue;
+        const Eigen::Vector2d depth_pixel = camera.project(p);
+        z = sound_depth(*view.depth, *view.camera, depth_pixel, options_.max_depth_spread);
+        if (z == 0) continue;
+        TrackPoint point{pixel, camera.unproject(depth_pixel.x(), depth_pixel.y(), z), 0, -1};
+        const double sigma = view.camera->noise.sigma(z);
+        point.inverse_depth_sigma = options_.depth_sigma_scale * sigma / (z * z);
+        point.region = region_of(view.regions, point.point, sigma);
+        if (point.region >= 0) {
+            point.point =
+                regularised(view.regions[static_cast<std::size_t>(point.region)].plane, point.point);
+            point.inverse_depth_sigma *= 0.5;
+        }
+        local.points.push_back(point);
+    }
+    local.pyramid = make_flow_pyramid(*view.gray, options_.flow_wide_levels, options_.flow_window_px, true);
+    return local;
+}
+
+Keyframe Odometry::State::add_keyframe(View& view, LocalKeyframe local, const Pose& odom_from_camera) {
+    Keyframe keyframe;
+    keyframe.utime = keyframe.pose_utime = view.utime;
+    keyframe.id = local.id = next_id_++;
+    keyframe.odom_from_camera = local.odom_from_keyframe = odom_from_camera;
+    keyframe.regions = view.regions;
+    if (view.gray) {
+        keyframe.features = describe(*view.gray, *view.depth, *view.camera, options_.max_descriptors,
+                                     options_.max_depth_spread);
+        for (Feature& feature : keyframe.features) {
+            const Eigen::Vector3d point = feature.point.cast<double>();
+            feature.region = region_of(view.regions, point, view.camera->noise.sigma(point.z()));
+            if (feature.region >= 0)
+                feature.point =
+                    regularised(view.regions[static_cast<std::size_t>(feature.region)].plane, point)
+                        .cast<float>();
+        }
+        known_.add({keyframe.id, odom_from_camera, keyframe.features, make_thumbnail(*view.gray)});
+    }
+    last_pyramid_ = std::move(view.pyramid);
+    last_pixels_.clear();
+    for (const TrackPoint& point : local.points) last_pixels_.push_back(point.pixel);
+    last_inlier_.assign(local.points.size(), 1);
+    local_.push_back(std::move(local));
+    if (static_cast<int>(local_.size()) > options_.local_keyframes + 1) local_.erase(local_.begin());
+    current_ = local_.size() - 1;
+    return keyframe;
+}
+
+Odometry::Odometry(const OdometryOptions& options) {
+    options.validate();
+    state_ = std::make_unique<State>(options);
+}
+Odometry::~Odometry() = default;
+Odometry::Odometry(Odometry&&) noexcept = default;
+Odometry& Odometry::operator=(Odometry&&) noexcept = default;
+
+OdometryResult Odometry::process(const OdometryFrame& frame) {
+    return state_->process(frame);
+}
+
+}  // namespace planemap

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "core/camera.hpp"
+#include "core/image.hpp"
+#include "core/keyframe.hpp"
+#include "odometry/options.hpp"
+
+namespace planemap {
+
+/// One RGB-D frame; everything is viewed, not owned, and only during process().
+struct OdometryFrame {
+    std::int64_t utime = 0;                 ///< of the depth image, microseconds
+    std::int64_t color_utime = 0;           ///< of the colour image, microseconds; 0: as utime
+    const GrayImage* gray = nullptr;        ///< the colour camera's luma; nullptr: no colour
+    const DepthImage* depth = nullptr;      ///< registered to the colour camera and of its size, raw units
+    const CameraInfo* camera = nullptr;     ///< never nullptr
+    std::span<const PlanarRegion> regions;  ///< of the depth image, colour camera's frame; may be empty;
+                                            ///< invalid ones are ignored
+};
+
+struct OdometryResult {
+    /// Of the depth image's moment (pose_utime = utime).
+    OdometryEstimate estimate;
+    /// Set when the frame became a keyframe. The estimate is still relative to the one before.
+    std::optional<Keyframe> keyframe;
+};
+
+/// Camera motion from RGB-D frames in order of time. The odom frame is the first keyframe's camera frame.
+///
+/// The first frame with enough texture or surface becomes keyframe 0 at the identity; until then frames are
+/// lost. A lost frame is looked for among the known keyframes; after max_lost_frames a new keyframe begins at
+/// the last pose without an edge (previous_id = -1). Time that goes back (a log that starts again) and
+/// another camera do the same at once.
+class Odometry {
+  public:
+    /// Throws std::invalid_argument that names every bad option.
+    explicit Odometry(const OdometryOptions& options);
+    ~Odometry();
+    Odometry(Odometry&&) noexcept;
+    Odometry& operator=(Odometry&&) noexcept;
+
+    /// Throws std::invalid_argument when depth or camera is missing, an image has not the colour camera's
+    /// size, or a new camera is not valid; the state is then as it was.
+    OdometryResult process(const OdometryFrame& frame);
+
+  private:
+    class State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace planemap

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "odometry/surface.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+namespace planemap {
+namespace {
+
+bool is_trusted(double z, const CameraInfo& info) {
+    return z >= info.depth_min_m && z <= info.depth_max_m;
+}
+
+/// Sums of readings of a cell, pixels relative to the cell's centre.
+struct CellSums {
+    Eigen::Matrix3d left = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d right = Eigen::Vector3d::Zero();
+    double squared = 0;  ///< of inverse depth
+    double z = 0;
+};
+
+/// The plane of 1/z = a u + b v + c; d = 0 when the readings are not on one.
+Plane fit_cell(const CellSums& sums, double u0, double v0, const PinholeCamera& camera,
+               const CameraInfo& info) {
+    const double n = sums.left(2, 2);
+    const Eigen::Vector3d abc = sums.left.inverse() * sums.right;
+    if (!abc.allFinite()) return {};
+    const double variance = std::max(0.0, sums.squared - abc.dot(sums.right)) / n;
+    const double z = sums.z / n, sigma = info.noise.sigma(z) / (z * z);
+    if (std::sqrt(variance) > 2 * sigma) return {};
+    const double c = abc.z() - abc.x() * u0 - abc.y() * v0;
+    const Eigen::Vector3d normal(abc.x() * camera.fx, abc.y() * camera.fy,
+                                 abc.x() * camera.cx + abc.y() * camera.cy + c);
+    const double norm = normal.norm();
+    if (!(norm > 1e-6)) return {};
+    return {-normal / norm, 1 / norm};
+}
+
+}  // namespace
+
+std::vector<SurfaceSample> sample_depth(const DepthImage& depth, const PinholeCamera& camera,
+                                        const CameraInfo& info, int stride_px) {
+    std::vector<SurfaceSample> samples;
+    for (int v = stride_px / 2; v < depth.height; v += stride_px) {
+        const std::uint16_t* row = depth.row(v);
+        for (int u = stride_px / 2; u < depth.width; u += stride_px) {
+            const double z = info.metres(row[u]);
+            if (!is_valid_depth(row[u]) || !is_trusted(z, info)) continue;
+            samples.push_back({camera.unproject(u, v, z), info.noise.sigma(z)});
+        }
+    }
+    return samples;
+}
+
+Surface::Surface(const DepthImage& depth, const PinholeCamera& camera, const CameraInfo& info, int cell_px)
+    : cell_px_(cell_px), columns_(depth.width / cell_px), rows_(depth.height / cell_px) {
+    planes_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
+    const int needed = cell_px * cell_px / 4 * 3 / 4;  // of every other pixel of every other row
+    const double centre = 0.5 * cell_px;
+    for (int row = 0; row < rows_; ++row) {
+        for (int column = 0; column < columns_; ++column) {
+            CellSums sums;
+            for (int j = 0; j < cell_px; j += 2) {
+                const std::uint16_t* readings = depth.row(row * cell_px + j) + column * cell_px;
+                for (int i = 0; i < cell_px; i += 2) {
+                    const double z = info.metres(readings[i]);
+                    if (!is_valid_depth(readings[i]) || !is_trusted(z, info)) continue;
+                    const double w = 1 / z, u = i - centre, v = j - centre;
+                    sums.left(0, 0) += u * u;
+                    sums.left(0, 1) += u * v;
+                    sums.left(1, 1) += v * v;
+                    sums.left(0, 2) += u;
+                    sums.left(1, 2) += v;
+                    sums.left(2, 2) += 1;
+                    sums.right += w * Eigen::Vector3d(u, v, 1);
+                    sums.squared += w * w;
+                    sums.z += z;
+                }
+            }
+            if (sums.left(2, 2) < needed) continue;
+            sums.left.triangularView<Eigen::StrictlyLower>() = sums.left.transpose();
+            Plane& plane = planes_[static_cast<std::size_t>(row * columns_ + column)];
+            plane = fit_cell(sums, column * cell_px + centre, row * cell_px + centre, camera, info);
+            count_ += plane.d > 0;
+        }
+    }
+}
+
+const Plane* Surface::at(const Eigen::Vector2d& pixel) const {
+    if (!(pixel.x() >= -0.5 && pixel.y() >= -0.5 && pixel.x() < 1e5 && pixel.y() < 1e5)) return nullptr;
+    const int column = static_cast<int>(pixel.x() + 0.5) / cell_px_;
+    const int row = static_cast<int>(pixel.y() + 0.5) / cell_px_;
+    if (column >= columns_ || row >= rows_) return nullptr;
+    const Plane& plane = planes_[static_cast<std::size_t>(row * columns_ + column)];
+    return plane.d > 0 ? &plane : nullptr;
+}
+
+SurfaceMatch match_surface(const Surface& surface, const PinholeCamera& camera,
+                           const std::vector<SurfaceSample>& samples, const Pose& camera_from_keyframe,
+                           double gate_m, double weight) {
+    SurfaceMatch match;
+    match.term.at = camera_from_keyframe;
+    const Pose keyframe_from_camera = camera_from_keyframe.inverse();
+    double squared = 0;
+    for (const SurfaceSample& sample : samples) {
+        const Eigen::Vector3d p = keyframe_from_camera * sample.point;
+        if (!(p.z() > 0.05)) continue;
+        const Plane* plane = surface.at(camera.project(p));
+        if (!plane) continue;
+        ++match.visible;
+        const double distance = plane->signed_distance(p);
+        const Eigen::Vector3d normal = camera_from_keyframe.linear() * plane->normal;
+        // Depth noise moves the point along its ray; both views have it.
+        const double slant = std::abs(normal.dot(sample.point)) / sample.point.z();
+        const double sigma = 1.4 * sample.sigma * std::max(slant, 0.2);
+        if (!(std::abs(distance) < std::max(gate_m, 3 * sigma)) || slant < 0.1) continue;
+        const double r = distance / sigma;
+        Twist j;
+        j << -normal / sigma, normal.cross(sample.point) / sigma;
+        const double w = weight / (1 + r * r / 4);
+        match.term.information.selfadjointView<Eigen::Upper>().rankUpdate(j, w);
+        match.term.gradient += (w * r) * j;
+        squared += r * r;
+        ++match.matched;
+    }
+    match.term.information.triangularView<Eigen::StrictlyLower>() = match.term.information.transpose();
+    if (match.matched > 0) match.residual = std::sqrt(squared / match.matched);
+    return match;
+}
+
+}  // namespace planemap

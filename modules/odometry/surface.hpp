@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A keyframe's depth as small planes, and other frames' depth held against it (point to plane).
+#pragma once
+
+#include <vector>
+
+#include "core/camera.hpp"
+#include "core/image.hpp"
+#include "core/plane.hpp"
+#include "odometry/alignment.hpp"
+
+namespace planemap {
+
+/// One reading of a depth image.
+struct SurfaceSample {
+    Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< camera frame, metres
+    double sigma = 0;                                 ///< of its depth, metres
+};
+
+/// Every stride-th valid reading, rows and columns. `camera` is the camera the depth image is registered to.
+std::vector<SurfaceSample> sample_depth(const DepthImage& depth, const PinholeCamera& camera,
+                                        const CameraInfo& info, int stride_px);
+
+/// The surface seen in a depth image: one plane for each square cell whose readings lie on one.
+/// A plane is linear in inverse depth, 1/z = a u + b v + c, so a cell is a 3x3 least-squares fit.
+class Surface {
+  public:
+    Surface() = default;
+    Surface(const DepthImage& depth, const PinholeCamera& camera, const CameraInfo& info, int cell_px);
+
+    /// Number of cells with a plane.
+    int cells() const { return count_; }
+    /// The plane at a pixel (camera frame), or nullptr.
+    const Plane* at(const Eigen::Vector2d& pixel) const;
+
+  private:
+    int cell_px_ = 1, columns_ = 0, rows_ = 0, count_ = 0;
+    std::vector<Plane> planes_;  ///< d = 0: none
+};
+
+struct SurfaceMatch {
+    QuadraticTerm term;   ///< about the pose it was asked for
+    int matched = 0;      ///< samples on the surface
+    int visible = 0;      ///< samples that fall on a cell of the surface, matched or not
+    double residual = 0;  ///< RMS distance of the matched samples, in sigmas
+};
+
+/// Distances of a frame's samples to a keyframe's surface at camera_from_keyframe, weighted by the depth
+/// noise and a heavy tail; samples further off than the larger of gate_m and 3 sigma are left out. `weight`
+/// scales the information of each sample, whose errors are not independent of its neighbours'.
+SurfaceMatch match_surface(const Surface& surface, const PinholeCamera& camera,
+                           const std::vector<SurfaceSample>& samples, const Pose& camera_from_keyframe,
+                           double gate_m, double weight);
+
+}  // namespace planemap

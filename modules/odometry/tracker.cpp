@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "odometry/tracker.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "odometry/features.hpp"
+#include "odometry/ransac.hpp"
+
+namespace planemap {
+namespace {
+
+constexpr double kPlaneAngle = 0.14;   // 8 degrees between the two views of a plane
+constexpr double kPlaneGap = 0.3;      // metres within a plane between what the two views saw of it
+constexpr int kCoarseSteps = 10;       // at each pyramid level
+constexpr double kCoarseStep = 0.002;  // metres and radians; smaller steps end a level
+constexpr double kCoarseGate = 0.15;   // metres from the surface
+constexpr double kWeakDirection = 4;  // information of the data over the guess's below which it is degenerate
+
+/// The points that flow found, as terms; depth is read where the point was at the depth image's time.
+std::vector<PointTerm> make_terms(const OdometryOptions& options, const LocalKeyframe& keyframe,
+                                  const View& view, const Guess& guess,
+                                  const std::vector<cv::Point2f>& pixels,
+                                  const std::vector<std::size_t>& found) {
+    const PinholeCamera& camera = view.camera->color;
+    const Pose color_from_depth_time = pose_from_twist(view.color_offset_s * guess.velocity);
+    std::vector<PointTerm> terms;
+    terms.reserve(found.size());
+    for (const std::size_t i : found) {
+        PointTerm term;
+        term.point = keyframe.points[i].point;
+        term.pixel = {pixels[i].x, pixels[i].y};
+        term.pixel_sigma = options.pixel_sigma_px;
+        Eigen::Vector2d depth_pixel = term.pixel;
+        const Eigen::Vector3d p = guess.camera_from_keyframe * term.point;
+        const Eigen::Vector3d p_color = color_from_depth_time * p;
+        if (p.z() > 0.05 && p_color.z() > 0.05) depth_pixel += camera.project(p) - camera.project(p_color);
+        const double z = sound_depth(*view.depth, *view.camera, depth_pixel, options.max_depth_spread);
+        if (z > 0) {
+            const double sigma = options.depth_sigma_scale * view.camera->noise.sigma(z) / (z * z);
+            term.inverse_depth = 1 / z;
+            term.inverse_depth_sigma = std::hypot(sigma, keyframe.points[i].inverse_depth_sigma);
+        }
+        terms.push_back(term);
+    }
+    return terms;
+}
+
+QuadraticTerm guess_term(const Guess& guess) {
+    return {guess.camera_from_keyframe, guess.information, Twist::Zero()};
+}
+
+bool is_supported(const OdometryOptions& options, const AlignmentResult& result, std::size_t terms) {
+    return result.converged && result.inliers >= options.min_inliers &&
+           result.inliers >= options.min_inlier_share * static_cast<double>(terms);
+}
+
+/// True when the data say too little about some direction compared with the guess.
+bool is_degenerate(const Matrix6d& information, const Guess& guess) {
+    const Twist scale = guess.information.diagonal().cwiseSqrt().cwiseInverse();
+    const Matrix6d data = scale.asDiagonal() * (information - guess.information) * scale.asDiagonal();
+    const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(data, Eigen::EigenvaluesOnly);
+    return !(eigen.eigenvalues()(0) > kWeakDirection);
+}
+
+Alignment make_alignment(const OdometryOptions& options, const View& view, const Guess& guess) {
+    Alignment alignment;
+    alignment.camera = view.camera->color;
+    alignment.velocity = guess.velocity;
+    alignment.color_offset_s = view.color_offset_s;
+    alignment.color_offset_sigma_s = options.color_jitter_s;
+    alignment.loss_scale = options.loss_scale;
+    alignment.inlier_sigmas = options.inlier_sigmas;
+    alignment.quadratics.push_back(guess_term(guess));
+    return alignment;
+}
+
+/// Points alone: from the guess, and by RANSAC when that does not fit.
+AlignmentResult align_robustly(const OdometryOptions& options, const Alignment& alignment,
+                               const Guess& guess) {
+    AlignmentResult result = align(alignment, guess.camera_from_keyframe);
+    const auto terms = static_cast<double>(alignment.points.size());
+    if (result.converged && result.inliers >= 0.5 * terms) return result;
+    RansacOptions ransac;
+    ransac.inlier_px = options.inlier_sigmas * options.pixel_sigma_px;
+    ransac.min_inliers = options.min_inliers;
+    ransac.seed = options.seed;
+    const std::optional<Pose> pose = ransac_motion(alignment.camera, alignment.points, ransac);
+    if (!pose) return result;
+    // A guess that did not fit says nothing.
+    Alignment free = alignment;
+    free.quadratics[0].at = *pose;
+    AlignmentResult other = align(free, *pose);
+    return other.converged && other.inliers > result.inliers ? other : result;
+}
+
+std::vector<QuadraticTerm> geometry_terms(const OdometryOptions& options, const LocalKeyframe& keyframe,
+                                          const View& view, const Pose& camera_from_keyframe) {
+    std::vector<QuadraticTerm> terms;
+    if (options.surface_weight > 0)
+        terms.push_back(match_surface(keyframe.surface, view.camera->color, view.samples,
+                                      camera_from_keyframe, options.surface_gate_m, options.surface_weight)
+                            .term);
+    if (options.plane_points > 0)
+        terms.push_back(match_planes(keyframe.regions, view.regions, camera_from_keyframe, view.camera->noise,
+                                     options.plane_points));
+    return terms;
+}
+
+}  // namespace
+
+Twist Guess::velocity_at(const Pose& camera_from_keyframe) const {
+    if (elapsed_s <= 0) return velocity;
+    return twist_from_pose(camera_from_keyframe * last_from_keyframe.inverse()) / elapsed_s;
+}
+
+QuadraticTerm match_planes(std::span<const PlanarRegion> keyframe_regions,
+                           std::span<const PlanarRegion> regions, const Pose& camera_from_keyframe,
+                           const DepthNoise& noise, double independent_points) {
+    QuadraticTerm term;
+    term.at = camera_from_keyframe;
+    const Pose keyframe_from_camera = camera_from_keyframe.inverse();
+    for (const PlanarRegion& region : regions) {
+        const Eigen::Vector3d mean = region.moments.mean(), mean_keyframe = keyframe_from_camera * mean;
+        const double sigma = 1.4 * noise.sigma(mean.z());
+        const PlanarRegion* best = nullptr;
+        double nearest = 0.02 + 3 * sigma;
+        for (const PlanarRegion& other : keyframe_regions) {
+            const Eigen::Vector3d normal = camera_from_keyframe.linear() * other.plane.normal;
+            if (angle_between(normal, region.plane.normal) > kPlaneAngle) continue;
+            const double off = std::abs(other.plane.signed_distance(mean_keyframe));
+            if (off > nearest || distance(other, mean_keyframe) > kPlaneGap) continue;
+            nearest = off;
+            best = &other;
+        }
+        if (!best) continue;
+        const Plane plane = camera_from_keyframe * best->plane;
+        const double count = region.moments.count;
+        const double weight = std::min(1.0, independent_points / count) / (sigma * sigma);
+        const Eigen::Matrix3d a = skew(plane.normal);
+        const Eigen::Vector3d &n = plane.normal, &s = region.moments.sum;
+        term.information.topLeftCorner<3, 3>() += weight * count * n * n.transpose();
+        term.information.topRightCorner<3, 3>() -= weight * n * (a * s).transpose();
+        term.information.bottomRightCorner<3, 3>() += weight * a * region.moments.scatter * a.transpose();
+        term.gradient.head<3>() -= weight * (n.dot(s) + count * plane.d) * n;
+        term.gradient.tail<3>() += weight * a * (region.moments.scatter * n + plane.d * s);
+    }
+    term.information.bottomLeftCorner<3, 3>() = term.information.topRightCorner<3, 3>().transpose();
+    return term;
+}
+
+std::optional<Track> align_points(const OdometryOptions& options, const LocalKeyframe& keyframe,
+                                  const View& view, const Guess& guess, std::vector<cv::Point2f> pixels,
+                                  const std::vector<char>& found) {
+    std::vector<std::size_t> indices;
+    for (std::size_t i = 0; i < found.size(); ++i)
+        if (found[i]) indices.push_back(i);
+    if (static_cast<int>(indices.size()) < options.min_inliers) return std::nullopt;
+    const std::vector<PointTerm> terms = make_terms(options, keyframe, view, guess, pixels, indices);
+    Alignment alignment = make_alignment(options, view, guess);
+    alignment.points = terms;
+    AlignmentResult result = align_robustly(options, alignment, guess);
+    if (!is_supported(options, result, terms.size())) return std::nullopt;
+
+    alignment.velocity = guess.velocity_at(result.camera_from_keyframe);
+    const std::vector<QuadraticTerm> geometry =
+        geometry_terms(options, keyframe, view, result.camera_from_keyframe);
+    alignment.quadratics.insert(alignment.quadratics.end(), geometry.begin(), geometry.end());
+    const AlignmentResult joint = align(alignment, result.camera_from_keyframe);
+    if (is_supported(options, joint, terms.size()) && joint.inliers > 0.8 * result.inliers) result = joint;
+
+    Track track;
+    track.by_features = true;
+    track.tried = static_cast<int>(terms.size());
+    track.inliers = result.inliers;
+    track.degenerate = is_degenerate(result.information, guess);
+    track.pixels = std::move(pixels);
+    track.inlier.assign(keyframe.points.size(), 0);
+    for (std::size_t i = 0; i < indices.size(); ++i) track.inlier[indices[i]] = result.inlier[i];
+    track.alignment = std::move(result);
+    return track;
+}
+
+std::optional<Track> track_points(const OdometryOptions& options, const LocalKeyframe& keyframe,
+                                  const View& view, const Guess& guess, const FlowSearch& search) {
+    if (view.pyramid.empty() || search.from->empty()) return std::nullopt;
+    const Pose color_from_keyframe =
+        pose_from_twist(view.color_offset_s * guess.velocity) * guess.camera_from_keyframe;
+    const PinholeCamera& camera = view.camera->color;
+    std::vector<std::size_t> indices;
+    std::vector<cv::Point2f> from, to;
+    for (std::size_t i = 0; i < keyframe.points.size(); ++i) {
+        if (search.usable && !(*search.usable)[i]) continue;
+        const Eigen::Vector3d p = color_from_keyframe * keyframe.points[i].point;
+        if (!(p.z() > 0.05)) continue;
+        const Eigen::Vector2d pixel = camera.project(p);
+        if (!camera.sees(pixel)) continue;
+        indices.push_back(i);
+        from.push_back((*search.from_pixels)[i]);
+        to.emplace_back(static_cast<float>(pixel.x()), static_cast<float>(pixel.y()));
+    }
+    const std::vector<char> found_here = track_flow(
+        *search.from, view.pyramid, from, to, options.flow_window_px, search.levels, options.flow_iterations);
+    std::vector<cv::Point2f> pixels(keyframe.points.size());
+    std::vector<char> found(keyframe.points.size(), 0);
+    for (std::size_t i = 0; i < indices.size(); ++i) {
+        pixels[indices[i]] = to[i];
+        found[indices[i]] = found_here[i];
+    }
+    return align_points(options, keyframe, view, guess, std::move(pixels), found);
+}
+
+std::optional<Track> track_surface(const OdometryOptions& options, const LocalKeyframe& keyframe,
+                                   const View& view, const Guess& guess) {
+    if (view.samples.empty() || keyframe.surface.cells() == 0) return std::nullopt;
+    Track track;
+    Pose pose = guess.camera_from_keyframe;
+    SurfaceMatch match;
+    for (int i = 0; i < 10; ++i) {
+        // Wide at first, then as narrow as the noise allows.
+        const double gate = options.surface_gate_m * (i < 4 ? 3 : 1);
+        match = match_surface(keyframe.surface, view.camera->color, view.samples, pose, gate,
+                              options.surface_weight);
+        Alignment alignment = make_alignment(options, view, guess);
+        alignment.quadratics.push_back(match.term);
+        alignment.quadratics.push_back(
+            match_planes(keyframe.regions, view.regions, pose, view.camera->noise, options.plane_points));
+        track.alignment = align(alignment, pose);
+        if (!track.alignment.converged) return std::nullopt;
+        const Twist step = twist_from_pose(track.alignment.camera_from_keyframe * pose.inverse());
+        pose = track.alignment.camera_from_keyframe;
+        if (i >= 5 && step.norm() < 1e-4) break;
+    }
+    const double needed = options.min_surface_share * static_cast<double>(view.samples.size());
+    if (match.matched < needed || match.matched < 0.7 * match.visible) return std::nullopt;
+    track.tried = match.visible;
+    track.inliers = match.matched;
+    track.degenerate = is_degenerate(track.alignment.information, guess);
+    return track;
+}
+
+Guess coarse_guess(const OdometryOptions& options, const LocalKeyframe& keyframe, const View& view,
+                   const Guess& guess, const DenseReference& last, const Pose& keyframe_from_last) {
+    Guess better = guess;
+    Pose& pose = better.camera_from_keyframe;
+    for (const DenseLevel& level : last.levels) {
+        for (int i = 0; i < kCoarseSteps; ++i) {
+            Alignment alignment = make_alignment(options, view, guess);
+            QuadraticTerm photometric =
+                photometric_term(level, view.pyramid, view.camera->color, pose * keyframe_from_last);
+            photometric.at = pose;
+            alignment.quadratics.push_back(photometric);
+            alignment.quadratics.push_back(match_surface(keyframe.surface, view.camera->color, view.samples,
+                                                         pose, kCoarseGate, options.surface_weight)
+                                               .term);
+            const Pose next = align(alignment, pose, 2).camera_from_keyframe;
+            const double step = twist_from_pose(next * pose.inverse()).norm();
+            pose = next;
+            if (step < kCoarseStep) break;
+        }
+    }
+    return better;
+}
+
+}  // namespace planemap

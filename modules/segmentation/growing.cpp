@@ -1,0 +1,415 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "segmentation/growing.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace planemap {
+
+namespace {
+
+constexpr double kRadians = std::numbers::pi / 180;
+constexpr std::uint16_t kMaxRegions = 4096;
+
+/// The four neighbours in the order of the link bits; f(bit, index of the neighbour).
+template <typename F>
+void for_neighbours(const CellMap& map, int cell, F&& f) {
+    const int x = cell % map.columns, y = cell / map.columns;
+    if (x + 1 < map.columns) f(0, cell + 1);
+    if (y + 1 < map.rows) f(1, cell + map.columns);
+    if (x > 0) f(2, cell - 1);
+    if (y > 0) f(3, cell - map.columns);
+}
+
+/// Distance along the plane's normal, metres, that a difference of inverse depth at depth z means.
+double distance_of(double inverse_depth, double z, const InverseDepthPlane& plane) {
+    return std::abs(inverse_depth) * z / plane.steepness();
+}
+
+}  // namespace
+
+RegionGrower::RegionGrower(const CellOptions& options) : options_(options) {}
+
+void RegionGrower::grow(const CellMap& map, double min_pixels) {
+    label_of_cell_.assign(map.cells.size(), 0);
+    regions_.clear();
+    find_links(map);
+    rank_seeds(map);
+    for (const int seed : seeds_) grow_from(map, seed, 0.4 * min_pixels);
+    settle_borders(map);
+    merge_regions(map);
+    drop_thin(map);
+    drop_curved(map);
+    keep_large(0.4 * min_pixels);
+}
+
+void RegionGrower::find_links(const CellMap& map) {
+    links_.assign(map.cells.size(), 0);
+    for (int i = 0; i < static_cast<int>(map.cells.size()); ++i) {
+        const Cell& cell = map.cells[static_cast<std::size_t>(i)];
+        if (!cell.planar) continue;
+        for_neighbours(map, i, [&](int bit, int j) {
+            if (bit > 1) return;  // right and down; the others are the same links seen from the other end
+            const Cell& other = map.cells[static_cast<std::size_t>(j)];
+            if (!other.planar) return;
+            const double x = 0.5 * (cell.fit.x + other.fit.x), y = 0.5 * (cell.fit.y + other.fit.y);
+            const double step = cell.fit.plane.at(x, y) - other.fit.plane.at(x, y);
+            const double z = std::max(cell.z, other.z);
+            const double limit =
+                std::max(options_.step_m, options_.step_sigmas * std::max(cell.sigma, other.sigma));
+            // The nearer to frontal of the two decides: at a grazing angle a step looks small along the
+            // normal.
+            const double distance =
+                std::max(distance_of(step, z, cell.fit.plane), distance_of(step, z, other.fit.plane));
+            if (!(distance <= limit)) return;
+            links_[static_cast<std::size_t>(i)] |= static_cast<std::uint8_t>(1 << bit);
+            links_[static_cast<std::size_t>(j)] |= static_cast<std::uint8_t>(4 << bit);
+        });
+    }
+}
+
+void RegionGrower::rank_seeds(const CellMap& map) {
+    // A seed is a cell with its linked neighbours; the flattest blocks with the most cells come first.
+    block_sums_.resize(map.cells.size());
+    ranking_.clear();
+    for (int i = 0; i < static_cast<int>(map.cells.size()); ++i) {
+        const Cell& cell = map.cells[static_cast<std::size_t>(i)];
+        if (!cell.planar) continue;
+        InverseDepthSums sums = cell.sums;
+        int missing = 4;
+        for_neighbours(map, i, [&](int bit, int j) {
+            if ((links_[static_cast<std::size_t>(i)] >> bit & 1) == 0) return;
+            sums += map.cells[static_cast<std::size_t>(j)].sums;
+            --missing;
+        });
+        block_sums_[static_cast<std::size_t>(i)] = sums;
+        const InverseDepthFit fit = sums.fit();
+        if (!fit.valid) continue;
+        const double distance = distance_of(std::sqrt(fit.mse), cell.z, fit.plane);
+        ranking_.emplace_back(static_cast<float>(distance / cell.sigma + 0.5 * missing), i);
+    }
+    std::sort(ranking_.begin(), ranking_.end());
+    seeds_.clear();
+    for (const auto& [score, cell] : ranking_) seeds_.push_back(cell);
+}
+
+bool RegionGrower::accepts(const InverseDepthPlane& plane, const Cell& cell) const {
+    const double limit = std::max(options_.grow_m, options_.grow_sigmas * cell.sigma);
+    const double offset = cell.fit.w - plane.at(cell.fit.x, cell.fit.y);
+    if (!(distance_of(offset, cell.z, plane) <= limit)) return false;
+    const double angle = std::min(options_.grow_angle_deg * kRadians + cell.angle_error, 1.4);
+    return plane.cosine(cell.fit.plane) >= std::cos(angle);
+}
+
+void RegionGrower::grow_from(const CellMap& map, int seed, double min_pixels) {
+    if (label_of_cell_[static_cast<std::size_t>(seed)] != 0 || regions_.size() >= kMaxRegions) return;
+    const auto label = static_cast<std::uint16_t>(regions_.size() + 1);
+    Region region;
+    region.fit = block_sums_[static_cast<std::size_t>(seed)].fit();
+    if (!accepts(region.fit.plane, map.cells[static_cast<std::size_t>(seed)])) return;
+
+    const auto add = [&](int i) {
+        const Cell& cell = map.cells[static_cast<std::size_t>(i)];
+        label_of_cell_[static_cast<std::size_t>(i)] = label;
+        region.sums += cell.sums;
+        region.pixels += cell.pixels;
+        ++region.cells;
+        queue_.push_back(i);
+    };
+    constexpr int kFirstFit = 5;  // cells; before that the seed's block is the better plane
+    int next_fit = kFirstFit;
+    queue_.clear();
+    add(seed);
+    // The second pass looks again at neighbours that the plane of the first cells did not accept.
+    for (int pass = 0; pass < 2; ++pass) {
+        for (std::size_t k = 0; k < queue_.size(); ++k) {
+            const int i = queue_[k];
+            for_neighbours(map, i, [&](int bit, int j) {
+                if ((links_[static_cast<std::size_t>(i)] >> bit & 1) == 0) return;
+                if (label_of_cell_[static_cast<std::size_t>(j)] != 0) return;
+                if (accepts(region.fit.plane, map.cells[static_cast<std::size_t>(j)])) add(j);
+            });
+            if (region.cells < next_fit) continue;
+            region.fit = region.sums.fit();
+            next_fit = region.cells + 1 + region.cells / 8;
+        }
+        if (region.cells >= kFirstFit) region.fit = region.sums.fit();
+    }
+    if (region.pixels < min_pixels || !region.fit.valid) {
+        for (const int i : queue_) label_of_cell_[static_cast<std::size_t>(i)] = 0;
+        return;
+    }
+    region.fit = region.sums.fit();
+    regions_.push_back(region);
+}
+
+void RegionGrower::settle_borders(const CellMap& map) {
+    // Early regions took cells that a later one fits better.
+    for (int i = 0; i < static_cast<int>(map.cells.size()); ++i) {
+        const Cell& cell = map.cells[static_cast<std::size_t>(i)];
+        if (!cell.planar) continue;
+        std::uint16_t& label = label_of_cell_[static_cast<std::size_t>(i)];
+        double best = label == 0 ? 1e300 : cell.fit.mse_to(regions_[label - 1u].fit.plane);
+        std::uint16_t best_label = label;
+        for_neighbours(map, i, [&](int bit, int j) {
+            const std::uint16_t other = label_of_cell_[static_cast<std::size_t>(j)];
+            if (other == 0 || other == label || (links_[static_cast<std::size_t>(i)] >> bit & 1) == 0) return;
+            const InverseDepthPlane& plane = regions_[other - 1u].fit.plane;
+            const double mse = cell.fit.mse_to(plane);
+            if (mse < best && accepts(plane, cell)) best = mse, best_label = other;
+        });
+        label = best_label;
+    }
+    resum(map);
+}
+
+void RegionGrower::resum(const CellMap& map) {
+    for (Region& region : regions_) region = Region{};
+    for (std::size_t i = 0; i < map.cells.size(); ++i) {
+        if (label_of_cell_[i] == 0) continue;
+        Region& region = regions_[label_of_cell_[i] - 1u];
+        region.sums += map.cells[i].sums;
+        region.pixels += map.cells[i].pixels;
+        ++region.cells;
+    }
+    for (Region& region : regions_) region.fit = region.sums.fit();
+}
+
+std::uint16_t RegionGrower::root(std::uint16_t label) const {
+    while (regions_[label - 1u].merged_into != 0) label = regions_[label - 1u].merged_into;
+    return label;
+}
+
+void RegionGrower::find_touching(const CellMap& map) {
+    // Pairs of regions with cells side by side, or with up to kGap other cells between them.
+    constexpr int kGap = 3;
+    touching_.clear();
+    const auto look = [&](std::size_t from, int steps, std::ptrdiff_t stride, int link_bit) {
+        const std::uint16_t a = label_of_cell_[from];
+        for (int k = 1; k <= steps; ++k) {
+            const std::uint16_t b = label_of_cell_[from + static_cast<std::size_t>(k * stride)];
+            if (b == a) return;
+            if (b == 0) continue;
+            const bool linked = k == 1 && (links_[from] >> link_bit & 1) != 0;
+            touching_.push_back({std::min(a, b), std::max(a, b), linked ? 1 : 0, k == 1 ? 1 : 0});
+            return;
+        }
+    };
+    for (int y = 0; y < map.rows; ++y) {
+        for (int x = 0; x < map.columns; ++x) {
+            const auto i = static_cast<std::size_t>(y * map.columns + x);
+            if (label_of_cell_[i] == 0) continue;
+            look(i, std::min(kGap + 1, map.columns - 1 - x), 1, 0);
+            look(i, std::min(kGap + 1, map.rows - 1 - y), map.columns, 1);
+        }
+    }
+    gather_touching();
+}
+
+void RegionGrower::gather_touching() {
+    // One entry a pair of regions, named by what they have become part of.
+    for (Touch& touch : touching_) {
+        const std::uint16_t a = root(touch.a), b = root(touch.b);
+        touch.a = std::min(a, b);
+        touch.b = std::max(a, b);
+    }
+    std::erase_if(touching_, [](const Touch& t) { return t.a == t.b; });
+    std::sort(touching_.begin(), touching_.end(),
+              [](const Touch& s, const Touch& t) { return std::pair(s.a, s.b) < std::pair(t.a, t.b); });
+    std::size_t count = 0;
+    for (const Touch& touch : touching_) {
+        if (count > 0 && touching_[count - 1].a == touch.a && touching_[count - 1].b == touch.b) {
+            touching_[count - 1].linked += touch.linked;
+            touching_[count - 1].side_by_side += touch.side_by_side;
+        } else {
+            touching_[count++] = touch;
+        }
+    }
+    touching_.resize(count);
+}
+
+double RegionGrower::merge_cost(const Touch& touch, const CellMap& map) const {
+    const Region &a = regions_[touch.a - 1u], &b = regions_[touch.b - 1u];
+    constexpr double kNever = 2;
+    if (!a.fit.valid || !b.fit.valid) return kNever;
+    InverseDepthSums sums = a.sums;
+    sums += b.sums;
+    const InverseDepthFit joint = sums.fit();
+    if (!joint.valid) return kNever;
+    // Where the cells at the common border continue each other there is no step, and what is left of a gap is
+    // the sensor's distortion; where nothing is known about the border only a much better fit will do.
+    const bool continuous = 2 * touch.linked > touch.side_by_side;
+    const double strictness = continuous ? 1 : 0.5;
+    double worst = 0;
+    double angle = options_.merge_angle_deg * kRadians;
+    for (const Region* part : {&a, &b}) {
+        const double z = 1 / part->fit.w;
+        const double sigma = map.noise.sigma(z);
+        const double limit = strictness * std::max(options_.merge_m, options_.merge_sigmas * sigma);
+        const double excess = std::max(0.0, part->fit.mse_to(joint.plane) - part->fit.mse);
+        worst = std::max(worst, distance_of(std::sqrt(excess), z, joint.plane) / limit);
+        // The normal of a small far region is uncertain.
+        angle += sigma / z / (map.cell_x * std::sqrt(part->cells) * 0.5 * part->cells);
+    }
+    return a.fit.plane.cosine(b.fit.plane) >= std::cos(std::min(angle, 1.0)) ? worst : kNever;
+}
+
+void RegionGrower::merge_regions(const CellMap& map) {
+    find_touching(map);
+    while (true) {
+        const Touch* best = nullptr;
+        double best_cost = 1;
+        for (Touch& touch : touching_) {
+            if (touch.cost < 0) touch.cost = merge_cost(touch, map);
+            if (touch.cost < best_cost) best_cost = touch.cost, best = &touch;
+        }
+        if (best == nullptr) break;
+        const std::uint16_t into_label = best->a, from_label = best->b;
+        Region &into = regions_[into_label - 1u], &from = regions_[from_label - 1u];
+        into.sums += from.sums;
+        into.pixels += from.pixels;
+        into.cells += from.cells;
+        into.fit = into.sums.fit();
+        from = Region{};
+        from.merged_into = into_label;
+        for (Touch& touch : touching_) {
+            if (touch.a == into_label || touch.b == into_label || touch.a == from_label ||
+                touch.b == from_label)
+                touch.cost = -1;
+        }
+        gather_touching();
+    }
+    for (std::uint16_t& label : label_of_cell_) {
+        if (label != 0) label = root(label);
+    }
+}
+
+bool RegionGrower::is_curved(const CellMap& map, std::uint16_t label) const {
+    // Fits a quadratic to the cells' distances from the plane and asks by how much its normal turns from end
+    // to end, and whether the bend is more than the sensor's noise.
+    constexpr int kFewestCells = 8;
+    const Region& region = regions_[label - 1u];
+    if (region.cells < kFewestCells) return false;
+    const Plane plane = region.fit.plane.plane();
+    const double z = 1 / region.fit.w;
+    const Eigen::Vector3d centre = Eigen::Vector3d(region.fit.x, region.fit.y, 1) * z;
+    const Eigen::Matrix3d axes = plane_axes(plane.normal, Eigen::Vector3d::UnitX());
+    using Vector6d = Eigen::Matrix<double, 6, 1>;
+    Matrix6d normal_matrix = Matrix6d::Zero();
+    Vector6d right = Vector6d::Zero();
+    Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
+    double total = 0, squares = 0;
+    for (std::size_t i = 0; i < map.cells.size(); ++i) {
+        if (label_of_cell_[i] != label) continue;
+        const Cell& cell = map.cells[i];
+        const Eigen::Vector3d p = Eigen::Vector3d(cell.fit.x, cell.fit.y, 1) / cell.fit.w;
+        const Eigen::Vector3d q = (axes.transpose() * (p - centre)) / z;
+        const double e = plane.signed_distance(p), weight = cell.pixels / (cell.sigma * cell.sigma);
+        const Vector6d terms{1, q.x(), q.y(), q.x() * q.x(), q.x() * q.y(), q.y() * q.y()};
+        normal_matrix += weight * terms * terms.transpose();
+        right += weight * e * terms;
+        spread += weight * q.head<2>() * q.head<2>().transpose();
+        total += weight;
+        squares += weight * e * e;
+    }
+    const Vector6d fit = normal_matrix.ldlt().solve(right);
+    if (!fit.allFinite()) return false;
+    const double explained = right.dot(fit) / squares;
+    Eigen::Matrix2d hessian;  // per z
+    hessian << 2 * fit[3], fit[4], fit[4], 2 * fit[5];
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> bend(hessian);
+    for (int k = 0; k < 2; ++k) {
+        const Eigen::Vector2d along = bend.eigenvectors().col(k);
+        const double length = std::sqrt(12 * along.dot(spread * along) / total);  // in units of z
+        const double turn = std::abs(bend.eigenvalues()[k]) * length / z;
+        const double rise = turn * length * z / 8;
+        if (turn > options_.bend_deg * kRadians && rise > map.noise.sigma(z) && explained > 0.5) return true;
+    }
+    return false;
+}
+
+void RegionGrower::find_smooth_borders(const CellMap& map) {
+    // Where a flat piece of a curved surface ends, the surface goes on without a step or a crease, but turned
+    // too far. Counted where the cells' normals are sure enough to tell.
+    borders_.assign(regions_.size(), Border{});
+    const double limit = options_.grow_angle_deg * kRadians;
+    const double similar = std::cos(limit), turned = std::cos(0.5 * limit);
+    for (int i = 0; i < static_cast<int>(map.cells.size()); ++i) {
+        const std::uint16_t label = label_of_cell_[static_cast<std::size_t>(i)];
+        if (label == 0) continue;
+        const Cell& cell = map.cells[static_cast<std::size_t>(i)];
+        for_neighbours(map, i, [&](int bit, int j) {
+            if (label_of_cell_[static_cast<std::size_t>(j)] == label) return;
+            Border& border = borders_[label - 1u];
+            ++border.length;
+            if ((links_[static_cast<std::size_t>(i)] >> bit & 1) == 0) return;
+            const Cell& other = map.cells[static_cast<std::size_t>(j)];
+            if (other.angle_error > limit) return;
+            const InverseDepthPlane& plane = regions_[label - 1u].fit.plane;
+            if (plane.cosine(other.fit.plane) < turned && cell.fit.plane.cosine(other.fit.plane) > similar)
+                ++border.smooth;
+        });
+    }
+}
+
+void RegionGrower::remove(std::uint16_t label) {
+    std::replace(label_of_cell_.begin(), label_of_cell_.end(), label, std::uint16_t{0});
+    regions_[label - 1u] = Region{};
+}
+
+void RegionGrower::drop_thin(const CellMap& map) {
+    // A chain of single cells beside a region whose band holds it is that region's noise along a border or a
+    // seam; its pixels go to that region. Chains are told by how few squares of two by two cells they have.
+    constexpr int kCellsPerSquare = 16;
+    squares_.assign(regions_.size(), 0);
+    for (int y = 0; y + 1 < map.rows; ++y) {
+        const std::uint16_t *row = label_of_cell_.data() + static_cast<std::ptrdiff_t>(y) * map.columns,
+                            *below = row + map.columns;
+        for (int x = 0; x + 1 < map.columns; ++x) {
+            if (row[x] != 0 && row[x] == row[x + 1] && row[x] == below[x] && row[x] == below[x + 1])
+                ++squares_[row[x] - 1u];
+        }
+    }
+    const auto is_thin = [&](std::uint16_t label) {
+        return squares_[label - 1u] * kCellsPerSquare < regions_[label - 1u].cells;
+    };
+    find_touching(map);
+    for (const Touch& touch : touching_) {
+        const bool first = is_thin(touch.a) && regions_[touch.a - 1u].cells < regions_[touch.b - 1u].cells;
+        if (!first && !is_thin(touch.b)) continue;
+        const std::uint16_t thin = first ? touch.a : touch.b, other = first ? touch.b : touch.a;
+        const Region &strip = regions_[thin - 1u], &beside = regions_[other - 1u];
+        if (strip.cells == 0 || beside.cells < strip.cells) continue;
+        const double z = 1 / strip.fit.w;
+        const double band = std::max(options_.thickness_m, options_.thickness_sigmas * map.noise.sigma(z));
+        const double rms = std::sqrt(strip.fit.mse_to(beside.fit.plane));
+        if (distance_of(rms, z, beside.fit.plane) < 0.5 * band) remove(thin);
+    }
+}
+
+void RegionGrower::drop_curved(const CellMap& map) {
+    constexpr double kSmoothShare = 0.4;
+    find_smooth_borders(map);
+    for (std::size_t r = 0; r < regions_.size(); ++r) {
+        const auto label = static_cast<std::uint16_t>(r + 1);
+        if (regions_[r].cells == 0) continue;
+        if (borders_[r].smooth <= kSmoothShare * borders_[r].length && !is_curved(map, label)) continue;
+        remove(label);
+    }
+}
+
+void RegionGrower::keep_large(double min_pixels) {
+    planes_.clear();
+    std::vector<std::uint16_t> new_label(regions_.size() + 1, 0);
+    for (std::size_t r = 0; r < regions_.size(); ++r) {
+        if (regions_[r].pixels < min_pixels || !regions_[r].fit.valid) continue;
+        planes_.push_back(regions_[r].fit.plane);
+        new_label[r + 1] = static_cast<std::uint16_t>(planes_.size());
+    }
+    for (std::uint16_t& label : label_of_cell_) label = new_label[label];
+}
+
+}  // namespace planemap

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string_view>
+
+#include "core/camera.hpp"
+
+namespace planemap {
+
+/// Reads a camera.json:
+///   {"depth_camera": {"width": 640, "height": 480, "fx": 585, "fy": 585, "cx": 320, "cy": 240},
+///    "depth_units_per_metre": 1000,
+///    "registered": false,                  optional: true if there is no color_from_depth
+///    "color_camera": {...},                like depth_camera, which it defaults to if registered
+///    "color_from_depth": {"rotation_vector_rad": [0, 0, 0], "translation_m": [-0.025, 0, 0]},
+///    "noise": {"base_m": 0.0012, "quadratic_per_m": 0.0019, "offset_m": 0.4},   optional, as each of its
+///    keys "depth_range_m": [0.3, 8],            optional "serial": "kinect"}                   optional
+/// Other keys are ignored. Throws std::runtime_error if the file cannot be read, and std::invalid_argument
+/// that names the file and every bad field at once.
+CameraInfo read_camera_file(const std::filesystem::path& file);
+
+/// The published intrinsics of the TUM RGB-D benchmark's sensors (registered, 5000 units a metre) if the name
+/// of the folder holds "freiburg1", "freiburg2" or "freiburg3"; else nothing.
+std::optional<CameraInfo> tum_camera(std::string_view folder_name);
+
+/// The camera of a dataset folder: its camera.json, or what tum_camera() knows. Throws as read_camera_file(),
+/// and std::runtime_error that shows what to write if there is neither.
+CameraInfo camera_of_folder(const std::filesystem::path& folder);
+
+}  // namespace planemap

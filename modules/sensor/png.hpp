@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Strict PNG reading: the whole image or an error, never a part of one.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string_view>
+
+#include "core/image.hpp"
+
+namespace planemap {
+
+/// Longest side of an image that is read.
+inline constexpr int kMaxImageSide = 8192;
+
+/// True when the bytes start as a PNG does.
+bool is_png(std::string_view bytes);
+
+/// Decodes a 16-bit greyscale PNG. Throws std::runtime_error (reason only) for anything else: another type or
+/// bit depth, a size other than width x height, a checksum that does not hold, a file cut short.
+DepthImage decode_depth_png(std::string_view bytes, int width, int height);
+
+/// Decodes an 8-bit RGB, RGBA, greyscale or palette PNG to RGB (alpha is dropped). Throws as
+/// decode_depth_png().
+RgbImage decode_color_png(std::string_view bytes, int width, int height);
+
+/// Writes a 16-bit greyscale PNG. Throws std::runtime_error naming the file.
+void write_depth_png(const std::filesystem::path& file, const DepthImage& depth);
+
+/// Writes an 8-bit RGB PNG. Throws std::runtime_error naming the file.
+void write_color_png(const std::filesystem::path& file, const RgbImage& color);
+
+}  // namespace planemap

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/camera.hpp"
+#include "core/image.hpp"
+
+namespace planemap {
+
+/// What a sensor delivers for one moment.
+struct SensorFrame {
+    std::int64_t utime = 0;                ///< of the depth image, microseconds; the frame's time
+    std::int64_t color_utime = 0;          ///< of the colour image, microseconds; 0 without colour
+    DepthImage depth;                      ///< in the sensor's units, as sensed (not registered)
+    std::vector<std::uint8_t> color_jpeg;  ///< colour as the JPEG that was stored, undecoded; or empty
+    RgbImage color;                        ///< colour pixels; empty if color_jpeg is set or without colour
+};
+
+/// What FrameSource::next() did.
+struct ReadResult {
+    enum class Status {
+        kFrame,   ///< a frame; with a message if its colour could not be used and was left out
+        kBroken,  ///< a frame that cannot be used, to be counted and skipped; the message says why
+        kEnd,     ///< no more frames, and nothing more will come
+    };
+    Status status = Status::kEnd;
+    std::string message;  ///< one line: file and reason; empty when all is well
+};
+
+/// A finite or endless sequence of frames from one sensor.
+class FrameSource {
+  public:
+    virtual ~FrameSource() = default;
+
+    /// The sensor; valid, and the same for all frames.
+    virtual const CameraInfo& camera() const = 0;
+    /// Frames in total, broken ones included; nothing if it is not known.
+    virtual std::optional<std::size_t> size() const = 0;
+    /// Reads the next frame. On kFrame `frame` is whole: the depth has the camera's size. Otherwise it is
+    /// empty.
+    virtual ReadResult next(SensorFrame& frame) = 0;
+};
+
+/// How an input is read.
+struct SourceOptions {
+    double max_color_gap_s = 0.02;  ///< depth without a colour image this near in time has no colour
+
+    /// Throws std::invalid_argument that names every bad field.
+    void validate() const;
+};
+
+/// Opens `input`: a TUM-layout folder (see Dataset), or "sim:WORLD?key=value&..." (see SimulatedSource).
+/// Throws std::runtime_error naming file and reason if there is nothing to read, std::invalid_argument for a
+/// bad camera.json or simulator name.
+std::unique_ptr<FrameSource> open_source(const std::string& input, const SourceOptions& options = {});
+
+}  // namespace planemap

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/files.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <stdexcept>
+
+#include "core/temporary_folder.hpp"
+
+namespace planemap {
+namespace {
+
+using test::TemporaryFolder;
+using testing::HasSubstr;
+
+template <typename Call>
+std::string error_of(Call call) {
+    try {
+        call();
+    } catch (const std::runtime_error& error) {
+        return error.what();
+    }
+    return "";
+}
+
+TEST(Files, BytesSurvive) {
+    const TemporaryFolder folder;
+    std::string bytes;
+    for (int i = 0; i < 100000; ++i) bytes.push_back(static_cast<char>(i * 31 % 256));
+    write_file(folder / "a", bytes);
+    EXPECT_EQ(read_file(folder / "a"), bytes);
+    write_file(folder / "a", "");
+    EXPECT_EQ(read_file(folder / "a"), "");
+}
+
+TEST(Files, WritingLeavesNothingBeside) {
+    const TemporaryFolder folder;
+    write_file(folder / "a", "one");
+    write_file(folder / "a", "two");
+    EXPECT_EQ(read_file(folder / "a"), "two");
+    const auto entries = std::distance(std::filesystem::directory_iterator(folder.path()), {});
+    EXPECT_EQ(entries, 1);
+}
+
+TEST(Files, FailureNamesTheFileAndKeepsTheOldOne) {
+    const TemporaryFolder folder;
+    EXPECT_THAT(error_of([&] { read_file(folder / "missing"); }), HasSubstr("missing"));
+    EXPECT_THAT(error_of([&] { read_file(folder.path()); }), HasSubstr("directory"));
+    EXPECT_THAT(error_of([&] { write_file(folder / "none/a", "x"); }), HasSubstr("none/a"));
+    EXPECT_NE(error_of([&] { write_file(folder.path(), "x"); }), "") << "the target is a folder";
+    EXPECT_TRUE(std::filesystem::is_directory(folder.path()));
+}
+
+TEST(Files, RefusesMoreThanTheLimit) {
+    const TemporaryFolder folder;
+    write_file(folder / "a", "0123456789");
+    EXPECT_EQ(read_file(folder / "a", 10).size(), 10u);
+    EXPECT_THAT(error_of([&] { read_file(folder / "a", 9); }), HasSubstr("10 bytes"));
+}
+
+}  // namespace
+}  // namespace planemap

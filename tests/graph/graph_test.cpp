@@ -1,0 +1,323 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "graph/graph.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <stdexcept>
+
+#include "graph/synthetic.hpp"
+
+namespace planemap {
+namespace {
+
+using namespace planemap::test;
+using testing::HasSubstr;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// Root mean square distance of positions to the truth; both start at the same pose.
+double rms_error(const KeyframeTrajectory& trajectory, const std::vector<Pose>& truth) {
+    double sum = 0;
+    for (std::size_t i = 0; i < truth.size(); ++i)
+        sum +=
+            (trajectory.keyframes[i].world_from_camera.translation() - truth[i].translation()).squaredNorm();
+    return std::sqrt(sum / static_cast<double>(truth.size()));
+}
+
+double rms_error_of_odometry(const Walk& walk) {
+    double sum = 0;
+    for (std::size_t i = 0; i < walk.keyframes.size(); ++i) {
+        sum += (walk.keyframes[i].odom_from_camera.translation() - walk.world_from_camera[i].translation())
+                   .squaredNorm();
+    }
+    return std::sqrt(sum / static_cast<double>(walk.keyframes.size()));
+}
+
+/// True when every closure is right within the given error.
+bool all_true(const PoseGraph& graph, const std::vector<Pose>& truth, double metres, double radians) {
+    for (const LoopClosure& loop : graph.loop_closures()) {
+        const Pose expected = truth[static_cast<std::size_t>(loop.from_id)].inverse() *
+                              truth[static_cast<std::size_t>(loop.to_id)];
+        const Pose error = expected.inverse() * loop.from_from_to;
+        if (error.translation().norm() > metres || rotation_angle(error) > radians) return false;
+    }
+    return true;
+}
+
+void expect_consistent(const KeyframeTrajectory& trajectory) {
+    for (std::size_t i = 0; i < trajectory.keyframes.size(); ++i) {
+        EXPECT_TRUE(is_valid(trajectory.keyframes[i].world_from_camera));
+        if (i == 0) continue;
+        EXPECT_GT(trajectory.keyframes[i].id, trajectory.keyframes[i - 1].id);
+    }
+    EXPECT_TRUE(is_valid(trajectory.world_from_odom));
+}
+
+class GraphTest : public testing::Test {
+  protected:
+    Random random_{1};
+    std::vector<Landmark> room_ = make_room(random_, Eigen::Vector3d::Zero(), 3.5, 3000);
+};
+
+TEST_F(GraphTest, AChainWithoutLoopsIsTheOdometry) {
+    const auto poses = square_loop(3, 12, 0.5);
+    const Walk walk = test::walk(room_, poses, random_);
+    PoseGraph graph;
+    for (const Keyframe& keyframe : walk.keyframes) graph.add(keyframe);
+    const KeyframeTrajectory& trajectory = graph.trajectory();
+    ASSERT_EQ(trajectory.keyframes.size(), walk.keyframes.size());
+    EXPECT_EQ(trajectory.loop_closures, 0);
+    EXPECT_EQ(trajectory.revision, 0);
+    EXPECT_TRUE(trajectory.world_from_odom.isApprox(Pose::Identity(), 1e-9));
+    for (std::size_t i = 0; i < walk.keyframes.size(); ++i) {
+        EXPECT_TRUE(
+            trajectory.keyframes[i].world_from_camera.isApprox(walk.keyframes[i].odom_from_camera, 1e-9));
+        EXPECT_EQ(trajectory.keyframes[i].utime, walk.keyframes[i].utime);
+    }
+    EXPECT_EQ(trajectory.utime, walk.keyframes.back().utime);
+}
+
+TEST_F(GraphTest, ALoopIsClosedAndTheErrorDropsByALargeFactor) {
+    const auto poses = square_loop(3, 12, 1.2);
+    const Walk walk = test::walk(room_, poses, random_);
+    PoseGraph graph;
+    int last_revision = 0;
+    for (const Keyframe& keyframe : walk.keyframes) {
+        const KeyframeTrajectory& trajectory = graph.add(keyframe);
+        EXPECT_GE(trajectory.revision, last_revision);
+        last_revision = trajectory.revision;
+        const Pose newest = trajectory.world_from_odom * keyframe.odom_from_camera;
+        EXPECT_TRUE(newest.isApprox(trajectory.keyframes.back().world_from_camera, 1e-9));
+    }
+    expect_consistent(graph.trajectory());
+    EXPECT_GT(graph.trajectory().loop_closures, 3);
+    EXPECT_EQ(graph.trajectory().loop_closures, static_cast<int>(graph.loop_closures().size()));
+    EXPECT_GT(graph.trajectory().revision, 0);
+    EXPECT_TRUE(all_true(graph, poses, 0.15, 0.04));
+    EXPECT_LT(rms_error(graph.trajectory(), poses), rms_error_of_odometry(walk) / 4);
+    EXPECT_EQ(graph.trajectory().keyframes[0].world_from_camera.matrix(),
+              walk.keyframes[0].odom_from_camera.matrix());
+}
+
+TEST_F(GraphTest, TheSameInputGivesTheSameBytes) {
+    const Walk walk = test::walk(room_, square_loop(3, 10, 1.2), random_);
+    PoseGraph one, two;
+    for (const Keyframe& keyframe : walk.keyframes) {
+        one.add(keyframe);
+        two.add(keyframe);
+    }
+    EXPECT_GT(one.trajectory().loop_closures, 0);
+    for (std::size_t i = 0; i < walk.keyframes.size(); ++i) {
+        EXPECT_EQ(one.trajectory().keyframes[i].world_from_camera.matrix(),
+                  two.trajectory().keyframes[i].world_from_camera.matrix());
+    }
+}
+
+TEST_F(GraphTest, RandomDescriptorsCloseNothing) {
+    Walk walk = test::walk(room_, square_loop(3, 10, 1.2), random_);
+    for (Keyframe& keyframe : walk.keyframes) {
+        for (Feature& feature : keyframe.features) feature.descriptor = random_descriptor(random_);
+    }
+    PoseGraph graph;
+    for (const Keyframe& keyframe : walk.keyframes) graph.add(keyframe);
+    EXPECT_TRUE(graph.loop_closures().empty());
+}
+
+TEST_F(GraphTest, SameDescriptorsWithAnotherGeometryCloseNothing) {
+    Walk walk = test::walk(room_, square_loop(3, 10, 1.2), random_);
+    for (Keyframe& keyframe : walk.keyframes) {
+        for (Feature& feature : keyframe.features)
+            feature.point = (random_.vector(1.5) + Eigen::Vector3d(0, 0, 3)).cast<float>();
+    }
+    PoseGraph graph;
+    for (const Keyframe& keyframe : walk.keyframes) graph.add(keyframe);
+    EXPECT_TRUE(graph.loop_closures().empty());
+}
+
+TEST_F(GraphTest, TwoIdenticalRoomsAreNotJoined) {
+    // A second room, 9 m on, holds the same things. The camera goes round in one, walks over and goes round
+    // again.
+    const Eigen::Vector3d offset(9, 0, 0);
+    auto rooms = room_;
+    for (const Landmark& landmark : room_) rooms.push_back({landmark.position + offset, landmark.descriptor});
+    std::vector<Pose> poses = square_loop(3, 12, 1.0);
+    const Pose leave = poses.back();
+    for (int i = 1; i <= 25; ++i) {
+        Pose pose = leave;
+        pose.translation() += offset * i / 25.0;
+        poses.push_back(pose);
+    }
+    for (const Pose& pose : square_loop(3, 12, 1.0, offset)) poses.push_back(pose);
+    const Walk walk = test::walk(rooms, poses, random_);
+    PoseGraph graph;
+    for (const Keyframe& keyframe : walk.keyframes) graph.add(keyframe);
+    EXPECT_GT(graph.loop_closures().size(), 1u) << "each room closes on itself";
+    EXPECT_TRUE(all_true(graph, poses, 0.15, 0.04));
+}
+
+TEST_F(GraphTest, OneFalseLoopDoesNotBendTheMap) {
+    // A place 1.3 m aside looks like one seen before, within the bound of drift.
+    const auto poses = square_loop(3, 12, 1.2);
+    Walk walk = test::walk(room_, poses, random_);
+    PoseGraph honest;
+    for (const Keyframe& keyframe : walk.keyframes) honest.add(keyframe);
+
+    Keyframe& mistaken = walk.keyframes[30];
+    mistaken.features = see(room_, poses[4], random_);
+    GraphOptions options;
+    options.drift_base_m = options.drift_base_rad = 10;  // let it through the check against odometry
+    PoseGraph graph(options);
+    for (const Keyframe& keyframe : walk.keyframes) graph.add(keyframe);
+    EXPECT_FALSE(all_true(graph, poses, 0.3, 0.3)) << "the false one was accepted";
+    for (const LoopClosure& loop : graph.loop_closures()) {
+        if (loop.from_id != 30 && loop.to_id != 30) continue;
+        EXPECT_LT(loop.weight, 0.05);
+    }
+    EXPECT_LT(rms_error(graph.trajectory(), poses), rms_error(honest.trajectory(), poses) + 0.03);
+}
+
+TEST_F(GraphTest, ALostStretchIsTiedInByALoopClosureAlone) {
+    const auto poses = square_loop(3, 12, 1.3);
+    Walk walk = test::walk(room_, poses, random_);
+    // Lost at 20: from there on odometry starts over, turned and moved, as far as it may have gone.
+    const Pose wrong = pose_from_twist((Twist() << 0.8, 0.1, -0.5, 0, 2.5, 0).finished());
+    walk.keyframes[20].previous_id = -1;
+    for (std::size_t i = 20; i < walk.keyframes.size(); ++i) {
+        walk.keyframes[i].odom_from_camera = orthonormalised(wrong * walk.keyframes[i].odom_from_camera);
+        walk.keyframes[i].utime += 2000000;
+    }
+    PoseGraph graph;
+    for (const Keyframe& keyframe : walk.keyframes) graph.add(keyframe);
+    expect_consistent(graph.trajectory());
+    EXPECT_GT(graph.trajectory().loop_closures, 0);
+    EXPECT_TRUE(all_true(graph, poses, 0.15, 0.04));
+    EXPECT_LT(rms_error(graph.trajectory(), poses), 0.1);
+}
+
+TEST_F(GraphTest, AnEdgeFromAKeyframeThatNeverArrivedCountsAsALoss) {
+    const Walk walk = test::walk(room_, square_loop(3, 12, 1.2), random_);
+    PoseGraph graph;
+    for (const Keyframe& keyframe : walk.keyframes) {
+        if (keyframe.id != 7 && keyframe.id != 8) graph.add(keyframe);
+    }
+    expect_consistent(graph.trajectory());
+    EXPECT_EQ(graph.trajectory().keyframes.size(), walk.keyframes.size() - 2);
+}
+
+TEST_F(GraphTest, WorldIsTheOdomFrameOfTheFirstKeyframe) {
+    Walk walk = test::walk(room_, square_loop(3, 10, 0.3), random_);
+    const Pose other = random_.pose();
+    for (Keyframe& keyframe : walk.keyframes)
+        keyframe.odom_from_camera = orthonormalised(other * keyframe.odom_from_camera);
+    PoseGraph graph;
+    for (const Keyframe& keyframe : walk.keyframes) graph.add(keyframe);
+    EXPECT_EQ(graph.trajectory().keyframes[0].world_from_camera.matrix(),
+              walk.keyframes[0].odom_from_camera.matrix());
+    EXPECT_TRUE(graph.trajectory().world_from_odom.isApprox(Pose::Identity(), 1e-9));
+}
+
+TEST_F(GraphTest, HostileKeyframesAreRefusedByNameAndLeaveTheGraphAsItWas) {
+    const Walk walk = test::walk(room_, square_loop(3, 12, 0.3), random_);
+    PoseGraph graph;
+    for (std::size_t i = 0; i < 6; ++i) graph.add(walk.keyframes[i]);
+    const auto refusal = [&](auto change) -> std::string {
+        Keyframe bad = walk.keyframes[6];
+        change(bad);
+        try {
+            graph.add(bad);
+        } catch (const std::invalid_argument& error) {
+            return error.what();
+        }
+        return "";
+    };
+    EXPECT_THAT(refusal([](auto& k) { k.id = 5; }), HasSubstr("id is 5"));
+    EXPECT_THAT(refusal([](auto& k) { k.id = -4; }), HasSubstr("id is -4"));
+    EXPECT_THAT(refusal([](auto& k) { k.previous_id = k.id; }), HasSubstr("previous_id"));
+    EXPECT_THAT(refusal([](auto& k) { k.previous_id = -2; }), HasSubstr("previous_id"));
+    EXPECT_THAT(refusal([](auto& k) { k.odom_from_camera.translation().x() = kNan; }),
+                HasSubstr("odom_from_camera"));
+    EXPECT_THAT(refusal([](auto& k) { k.odom_from_camera.linear().setZero(); }),
+                HasSubstr("odom_from_camera"));
+    EXPECT_THAT(refusal([](auto& k) { k.odom_from_camera.translation().x() = 1e300; }),
+                HasSubstr("odom_from_camera"));
+    EXPECT_THAT(refusal([](auto& k) { k.previous_from_camera.linear() *= 2; }),
+                HasSubstr("previous_from_camera"));
+    EXPECT_THAT(refusal([](auto& k) { k.features[3].point.z() = static_cast<float>(kNan); }),
+                HasSubstr("features[3].point"));
+    EXPECT_THAT(refusal([](auto& k) { k.features[2].pixel.x() = static_cast<float>(kNan); }),
+                HasSubstr("features[2].pixel"));
+    EXPECT_THAT(refusal([](auto& k) { k.features[1].region = 0; }), HasSubstr("features[1].region"));
+    EXPECT_THAT(refusal([](auto& k) { k.regions.emplace_back(); }), HasSubstr("regions[0]"));
+    EXPECT_EQ(graph.trajectory().keyframes.size(), 6u);
+    EXPECT_NO_THROW(graph.add(walk.keyframes[6]));
+}
+
+TEST_F(GraphTest, UnusableCovariancesDoNotStopALoop) {
+    const auto poses = square_loop(3, 10, 1.2);
+    Walk walk = test::walk(room_, poses, random_);
+    for (Keyframe& keyframe : walk.keyframes) {
+        switch (keyframe.id % 5) {
+            case 0:
+                keyframe.covariance.setConstant(kNan);
+                break;
+            case 1:
+                keyframe.covariance.setZero();
+                break;
+            case 2:
+                keyframe.covariance = -Matrix6d::Identity();
+                break;
+            case 3:
+                keyframe.covariance.setConstant(1e300);
+                break;
+            default:
+                keyframe.covariance.setOnes();
+                break;
+        }
+    }
+    PoseGraph graph;
+    for (const Keyframe& keyframe : walk.keyframes) graph.add(keyframe);
+    expect_consistent(graph.trajectory());
+    EXPECT_GT(graph.trajectory().loop_closures, 0);
+}
+
+TEST_F(GraphTest, StrangeFeaturesAreHandled) {
+    PoseGraph graph;
+    for (int id = 0; id < 24; ++id) {
+        Keyframe keyframe;
+        keyframe.id = 3 * id;
+        keyframe.utime =
+            id % 2 == 0 ? std::numeric_limits<std::int64_t>::max() : std::numeric_limits<std::int64_t>::min();
+        keyframe.previous_id = id % 3 == 0 ? -1 : 3 * (id - 1);
+        for (int i = 0; i < (id == 20 ? 5000 : 200 * (id % 3)); ++i) {
+            Feature feature;
+            const float sizes[] = {0.0f, -1.0f, 1e-30f, 2.0f, std::numeric_limits<float>::max()};
+            feature.point = {sizes[random_.integer(0, 4)], sizes[random_.integer(0, 4)],
+                             sizes[random_.integer(0, 4)]};
+            if (id % 4 == 0) feature.descriptor = random_descriptor(random_);
+            keyframe.features.push_back(feature);
+        }
+        graph.add(keyframe);
+    }
+    expect_consistent(graph.trajectory());
+}
+
+TEST_F(GraphTest, EveryBadOptionIsNamed) {
+    GraphOptions options;
+    EXPECT_NO_THROW(options.validate());
+    options.min_inliers = 0;
+    options.matching_ratio = kNan;
+    options.loop_sigma_m = 0;
+    options.noise.base_m = -1;
+    try {
+        PoseGraph graph(options);
+        FAIL();
+    } catch (const std::invalid_argument& error) {
+        for (const char* field : {"min_inliers", "matching_ratio", "loop_sigma_m", "noise.base_m"})
+            EXPECT_THAT(error.what(), HasSubstr(field));
+    }
+}
+
+}  // namespace
+}  // namespace planemap

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "graph/view.hpp"
+
+#include <gtest/gtest.h>
+
+#include "graph/synthetic.hpp"
+
+namespace planemap::graph {
+namespace {
+
+using namespace planemap::test;
+
+View view_at(const std::vector<Landmark>& room, const Pose& pose, Random& random) {
+    Keyframe keyframe;
+    keyframe.features = see(room, pose, random);
+    return make_view(keyframe, 1000);
+}
+
+TEST(View, KeepsSoundFeaturesOnlyAndAtMostSoMany) {
+    Keyframe keyframe;
+    for (int i = 0; i < 100; ++i) {
+        Feature feature;
+        feature.point = {0.01f * static_cast<float>(i), 0, i % 2 == 0 ? 2.0f : 0.0f};
+        keyframe.features.push_back(feature);
+    }
+    EXPECT_EQ(make_view(keyframe, 1000).points.size(), 50u);
+    const View few = make_view(keyframe, 7);
+    EXPECT_EQ(few.points.size(), 7u);
+    EXPECT_EQ(few.descriptors.size(), 7u);
+    EXPECT_GT(few.points.back().x(), 0.7) << "spread over all";
+    for (const auto& p : few.points) EXPECT_TRUE(few.sees(p));
+    EXPECT_TRUE(make_view(Keyframe{}, 10).points.empty());
+}
+
+TEST(View, OverlapIsWholeForTheSamePoseAndNoneForTheOppositeOne) {
+    Random random(1);
+    const auto room = make_room(random, Eigen::Vector3d::Zero(), 3, 2000);
+    const Pose here = looking(Eigen::Vector3d::Zero(), 0), back = looking(Eigen::Vector3d::Zero(), M_PI);
+    const Pose aside = looking(Eigen::Vector3d::Zero(), 0.4);
+    const View a = view_at(room, here, random), b = view_at(room, back, random),
+               c = view_at(room, aside, random);
+    EXPECT_DOUBLE_EQ(overlap(a, a, Pose::Identity()), 1.0);
+    EXPECT_DOUBLE_EQ(overlap(a, b, here.inverse() * back), 0.0);
+    const double partly = overlap(a, c, here.inverse() * aside);
+    EXPECT_GT(partly, 0.4);
+    EXPECT_LT(partly, 0.8);
+    EXPECT_DOUBLE_EQ(overlap(a, View{}, Pose::Identity()), 0.0);
+    EXPECT_DOUBLE_EQ(overlap(View{}, a, Pose::Identity()), 0.0);
+}
+
+}  // namespace
+}  // namespace planemap::graph

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "map/export.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "map/scene.hpp"
+
+namespace planemap {
+namespace {
+
+using scene::facing;
+using scene::Rectangle;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+MapPlane plane_of(int id, const Rectangle& rectangle) {
+    MapPlane plane;
+    plane.id = id;
+    plane.region = scene::region_of(rectangle, Pose::Identity());
+    plane.area = area(plane.region.outline);
+    plane.keyframes = {0, 3};
+    return plane;
+}
+
+PlaneMap corner() {
+    PlaneMap map;
+    map.utime = 42;
+    map.planes = {
+        plane_of(1, {facing({0, 0, 0}, {0, 0, 1}, {1, 0, 0}), 1, 1, {}}),
+        plane_of(
+            3,
+            {facing({1, 0, 1}, {-1, 0, 0}, {0, 1, 0}), 1, 1, {scene::rectangle_ring(-0.3, -0.3, 0.2, 0.4)}}),
+        plane_of(12, {facing({0, 0, 2}, {0, 0, -1}, {1, 0, 0}), 1, 1, {}})};
+    map.planes[0].label = PlaneLabel::kFloor;
+    map.lines = {{1, 3, {1, -1, 0}, {1, 1, 0}}};
+    map.points = {{{1, 3, 12}, {1, 1, 0}}};
+    return map;
+}
+
+Trajectory walk() {
+    Trajectory trajectory;
+    for (int i = 0; i < 5; ++i) {
+        // Looking along world y, held upright: image rows point down, along -z.
+        Pose pose = Pose::Identity();
+        pose.linear() << 1, 0, 0, 0, 0, 1, 0, -1, 0;
+        pose.translation() = Eigen::Vector3d(-0.5 + 0.2 * i, 0, 1);
+        trajectory.push_back({i, pose});
+    }
+    return trajectory;
+}
+
+struct Ply {
+    std::vector<Eigen::Vector3f> vertices, normals;
+    std::vector<std::array<std::int32_t, 3>> faces;
+};
+
+Ply read_ply(const std::string& bytes) {
+    Ply ply;
+    std::istringstream in(bytes);
+    std::string line;
+    std::size_t vertices = 0, faces = 0;
+    std::getline(in, line);
+    EXPECT_EQ(line, "ply");
+    while (std::getline(in, line) && line != "end_header") {
+        std::sscanf(line.c_str(), "element vertex %zu", &vertices);
+        std::sscanf(line.c_str(), "element face %zu", &faces);
+    }
+    for (std::size_t i = 0; i < vertices; ++i) {
+        std::array<float, 6> values;
+        in.read(reinterpret_cast<char*>(values.data()), sizeof values);
+        in.ignore(3);
+        ply.vertices.emplace_back(values[0], values[1], values[2]);
+        ply.normals.emplace_back(values[3], values[4], values[5]);
+    }
+    for (std::size_t i = 0; i < faces; ++i) {
+        EXPECT_EQ(in.get(), 3);
+        std::array<std::int32_t, 3> face;
+        in.read(reinterpret_cast<char*>(face.data()), sizeof face);
+        ply.faces.push_back(face);
+    }
+    EXPECT_TRUE(in.good());
+    EXPECT_EQ(in.peek(), std::char_traits<char>::eof());
+    return ply;
+}
+
+TEST(PlanesJson, SaysWhatTheMapSays) {
+    const PlaneMap map = corner();
+    const auto json = nlohmann::json::parse(planes_json(map));
+    EXPECT_EQ(json["utime"], 42);
+    ASSERT_EQ(json["planes"].size(), 3u);
+    const auto& wall = json["planes"][1];
+    EXPECT_EQ(wall["id"], 3);
+    EXPECT_EQ(json["planes"][0]["label"], "floor");
+    EXPECT_EQ(wall["label"], "unknown");
+    EXPECT_NEAR(wall["normal"][0], -1, 1e-9);
+    EXPECT_NEAR(wall["d"], 1, 1e-6);
+    EXPECT_EQ(wall["inliers"], map.planes[1].region.moments.count);
+    EXPECT_NEAR(wall["area"], 4 - 0.35, 1e-6);
+    EXPECT_EQ(wall["box_corners"].size(), 8u);
+    EXPECT_EQ(wall["keyframes"], nlohmann::json::parse("[0, 3]"));
+    ASSERT_EQ(wall["outline"].size(), 2u);
+    for (const auto& ring : wall["outline"])
+        for (const auto& p : ring) EXPECT_NEAR(p[0], 1, 1e-6) << "outlines are in the world";
+    EXPECT_EQ(json["lines"][0]["planes"], nlohmann::json::parse("[1, 3]"));
+    EXPECT_EQ(json["points"][0]["position"], nlohmann::json::parse("[1.0, 1.0, 0.0]"));
+    EXPECT_EQ(planes_json(map), planes_json(corner()));
+}
+
+TEST(PlanesJson, OfAnEmptyMapAndOfNan) {
+    const auto empty = nlohmann::json::parse(planes_json({}));
+    EXPECT_TRUE(empty["planes"].empty() && empty["lines"].empty() && empty["points"].empty());
+    PlaneMap map = corner();
+    map.planes[0].region.rms = std::numeric_limits<double>::quiet_NaN();
+    map.planes[0].area = std::numeric_limits<double>::infinity();
+    const auto json = nlohmann::json::parse(planes_json(map));
+    EXPECT_TRUE(json["planes"][0]["rms"].is_null());
+    EXPECT_TRUE(json["planes"][0]["area"].is_null());
+}
+
+TEST(PlanesPly, HasTheAreaAndNormalsOfThePlanes) {
+    const PlaneMap map = corner();
+    const Ply ply = read_ply(planes_ply(map));
+    double area = 0, expected = 0;
+    for (const auto& face : ply.faces) {
+        std::array<Eigen::Vector3f, 3> p;
+        for (std::size_t i = 0; i < 3; ++i) {
+            ASSERT_LT(static_cast<std::size_t>(face[i]), ply.vertices.size());
+            p[i] = ply.vertices[static_cast<std::size_t>(face[i])];
+        }
+        const Eigen::Vector3f twice = (p[1] - p[0]).cross(p[2] - p[0]);
+        EXPECT_GT(twice.dot(ply.normals[static_cast<std::size_t>(face[0])]), 0)
+            << "faces turn like their normal";
+        area += 0.5 * static_cast<double>(twice.norm());
+    }
+    for (const MapPlane& plane : map.planes) expected += plane.area;
+    EXPECT_NEAR(area, expected, 1e-5);
+    EXPECT_TRUE(read_ply(planes_ply({})).faces.empty());
+}
+
+TEST(PlaneColor, TellsNeighbouringIdsApart) {
+    for (int id = -2; id < 100; ++id) {
+        const Rgb a = plane_color(id), b = plane_color(id + 1);
+        EXPECT_GT(std::abs(a.r - b.r) + std::abs(a.g - b.g) + std::abs(a.b - b.b), 60) << id;
+    }
+}
+
+TEST(GuessUp, IsTheNormalOfTheLevelPlane) {
+    EXPECT_NEAR((guess_up(corner(), walk()) - Eigen::Vector3d::UnitZ()).norm(), 0, 1e-6);
+    EXPECT_NEAR((guess_up({}, walk()) - Eigen::Vector3d::UnitZ()).norm(), 0, 1e-9);
+    EXPECT_EQ(guess_up({}, {}), Eigen::Vector3d(0, -1, 0));
+}
+
+TEST(Drawings, ShowPlanesAndTrajectory) {
+    for (const std::string& svg : {overhead_svg(corner(), walk()), perspective_svg(corner(), walk())}) {
+        EXPECT_THAT(svg, HasSubstr("<svg xmlns="));
+        EXPECT_THAT(svg, HasSubstr("</svg>"));
+        EXPECT_THAT(svg, Not(HasSubstr("nan")));
+        EXPECT_THAT(svg, Not(HasSubstr("inf")));
+    }
+    EXPECT_THAT(overhead_svg(corner(), walk()), HasSubstr(">3</text>"));
+    EXPECT_THAT(overhead_svg(corner(), walk()), Not(HasSubstr(">12</text>")))
+        << "a ceiling hides what is below";
+    EXPECT_EQ(overhead_svg(corner(), walk()), overhead_svg(corner(), walk()));
+}
+
+TEST(Drawings, OfAnEmptyMap) {
+    for (const std::string& svg : {overhead_svg({}, {}), perspective_svg({}, {}), overhead_svg({}, walk())}) {
+        EXPECT_THAT(svg, HasSubstr("</svg>"));
+        EXPECT_THAT(svg, Not(HasSubstr("nan")));
+        EXPECT_THAT(svg, Not(HasSubstr("inf")));
+    }
+}
+
+}  // namespace
+}  // namespace planemap

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "map/intersections.hpp"
+
+#include <gtest/gtest.h>
+
+#include "map/scene.hpp"
+
+namespace planemap {
+namespace {
+
+using scene::facing;
+using scene::Rectangle;
+
+MapPlane plane_of(int id, const Rectangle& rectangle) {
+    MapPlane plane;
+    plane.id = id;
+    plane.region = scene::region_of(rectangle, Pose::Identity());
+    plane.area = area(plane.region.outline);
+    return plane;
+}
+
+// A corner at (1, 1, 0): floor z = 0, walls x = 1 and y = 1.
+const Rectangle kFloor{facing({0, 0, 0}, {0, 0, 1}, {1, 0, 0}), 1, 1, {}};
+const Rectangle kWallX{facing({1, 0, 1}, {-1, 0, 0}, {0, 1, 0}), 1, 1, {}};
+const Rectangle kWallY{facing({0, 1, 1}, {0, -1, 0}, {1, 0, 0}), 1, 1, {}};
+
+TEST(Intersections, OfARoomsCorner) {
+    const MapPlane floor = plane_of(4, kFloor), wall_x = plane_of(2, kWallX), wall_y = plane_of(7, kWallY);
+    const auto lines = intersection_lines(floor, wall_x, {});
+    ASSERT_EQ(lines.size(), 1u);
+    EXPECT_EQ(lines[0].plane_a, 2);
+    EXPECT_EQ(lines[0].plane_b, 4);
+    for (const auto& end : {lines[0].from, lines[0].to}) {
+        EXPECT_NEAR(end.x(), 1, 1e-9);
+        EXPECT_NEAR(std::abs(end.y()), 1, 1e-9);
+        EXPECT_NEAR(end.z(), 0, 1e-9);
+    }
+    const auto point = intersection_point(floor, wall_y, wall_x, {});
+    ASSERT_TRUE(point);
+    EXPECT_EQ(point->planes, (std::array<int, 3>{2, 4, 7}));
+    EXPECT_NEAR((point->position - Eigen::Vector3d(1, 1, 0)).norm(), 0, 1e-9);
+}
+
+TEST(Intersections, AreCutToWhereBothAre) {
+    // A short wall on a long floor.
+    Rectangle wall = kWallX;
+    wall.half_x = 0.3;
+    const auto lines = intersection_lines(plane_of(1, kFloor), plane_of(2, wall), {});
+    ASSERT_EQ(lines.size(), 1u);
+    EXPECT_NEAR((lines[0].to - lines[0].from).norm(), 0.6, 1e-9);
+}
+
+TEST(Intersections, BreakAtADoor) {
+    // The door reaches from the floor up, 0.8 m wide.
+    Rectangle wall = kWallX;
+    MapPlane with_door = plane_of(2, wall);
+    with_door.region.outline = {
+        {Ring{{-1, -1}, {-0.4, -1}, {-0.4, 0.9}, {0.4, 0.9}, {0.4, -1}, {1, -1}, {1, 1}, {-1, 1}}}};
+    const Pose flip = facing({1, 0, 1}, {-1, 0, 0}, {0, 1, 0});
+    // The face's y axis points down for this wall; put the door's foot on the floor.
+    if (flip.linear().col(1).z() < 0)
+        for (auto& v : with_door.region.outline.rings[0]) v.y() = -v.y();
+    const auto lines = intersection_lines(plane_of(1, kFloor), with_door, {});
+    ASSERT_EQ(lines.size(), 2u);
+    for (const auto& line : lines) EXPECT_NEAR((line.to - line.from).norm(), 0.6, 1e-9);
+}
+
+TEST(Intersections, NeedAdjacency) {
+    Rectangle far = kWallX;
+    far.world_from_face.translation() += Eigen::Vector3d(0.2, 0, 0);
+    EXPECT_TRUE(intersection_lines(plane_of(1, kFloor), plane_of(2, far), {}).empty());
+    Rectangle near = kWallX;
+    near.world_from_face.translation() += Eigen::Vector3d(0.08, 0, 0.08);
+    EXPECT_EQ(intersection_lines(plane_of(1, kFloor), plane_of(2, near), {}).size(), 1u);
+    Rectangle high = kWallX;
+    high.world_from_face.translation().z() += 0.5;
+    EXPECT_TRUE(intersection_lines(plane_of(1, kFloor), plane_of(2, high), {}).empty());
+    EXPECT_FALSE(intersection_point(plane_of(1, kFloor), plane_of(2, kWallY), plane_of(3, high), {}));
+}
+
+TEST(Intersections, ParallelAndFlatPairsHaveNone) {
+    Rectangle table = kFloor;
+    table.world_from_face.translation().z() = 0.05;
+    EXPECT_TRUE(intersection_lines(plane_of(1, kFloor), plane_of(2, table), {}).empty());
+    const Rectangle ramp{facing({0, 0, 0}, {0.1, 0, 1}, {1, 0, 0}), 1, 1, {}};
+    EXPECT_TRUE(intersection_lines(plane_of(1, kFloor), plane_of(2, ramp), {}).empty());
+    EXPECT_TRUE(intersection_lines(plane_of(1, kFloor), plane_of(2, kFloor), {}).empty());
+    EXPECT_FALSE(intersection_point(plane_of(1, kFloor), plane_of(2, kFloor), plane_of(3, kWallX), {}));
+}
+
+TEST(Intersections, CrossingPlanesMeetInside) {
+    const Rectangle upright{facing({0, 0, 0}, {1, 0, 0}, {0, 1, 0}), 0.5, 0.5, {}};
+    const auto lines = intersection_lines(plane_of(1, kFloor), plane_of(2, upright), {});
+    ASSERT_EQ(lines.size(), 1u);
+    EXPECT_NEAR((lines[0].to - lines[0].from).norm(), 1, 1e-9);
+}
+
+}  // namespace
+}  // namespace planemap

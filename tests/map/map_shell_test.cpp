@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "map/map_shell.hpp"
+
+#include <unistd.h>
+
+#include "core/files.hpp"
+#include "messages/log.hpp"
+#include "messages/sample_messages.hpp"
+#include "shell_fixture.hpp"
+
+namespace planemap {
+namespace {
+
+class MapShellTest : public test::ShellTest {
+  protected:
+    void TearDown() override { std::filesystem::remove_all(folder_); }
+    std::filesystem::path folder_ =
+        std::filesystem::temp_directory_path() / ("planemap_map_shell_test_" + std::to_string(::getpid()));
+
+    static KeyframeTrajectory trajectory() {
+        KeyframeTrajectory trajectory;
+        trajectory.keyframes = {{3, 1234567, Pose::Identity()}};
+        trajectory.utime = 1234567;
+        return trajectory;
+    }
+};
+
+TEST_F(MapShellTest, PublishesTheMapAmongCorruptMessagesAndWritesItAsALog) {
+    MapShellOptions options;
+    options.output = folder_;
+    MapShell shell(bus_, options);
+    const auto maps = collect<plane_map_t>(channels::kMap);
+    const Keyframe keyframe = test::sample_keyframe();
+    publish_corrupt(channels::kKeyframe, to_message(keyframe, 0));
+    publish_corrupt(channels::kTrajectory, to_message(trajectory(), 0));
+    bus_.publish(channels::kKeyframe, to_message(keyframe, 0));
+    bus_.publish(channels::kTrajectory, to_message(trajectory(), 0));
+    bus_.drain();
+    shell.finish();
+    ASSERT_EQ(maps->size(), 1u);
+    const PlaneMap map = from_message(maps->back());
+    EXPECT_EQ(map.planes.size(), 2u);  // two walls a metre apart
+    EXPECT_EQ(shell.status().decode_error_count(), 2 * kCorrupt);
+
+    LogReader log(folder_ / "plane_map.lcmlog");
+    LogEvent event;
+    ASSERT_TRUE(log.next(event));
+    EXPECT_EQ(event.channel, channels::kMap);
+    EXPECT_EQ(from_message(decode<plane_map_t>(event.bytes)).planes.size(), 2u);
+    EXPECT_FALSE(log.next(event));
+}
+
+TEST_F(MapShellTest, AnOutputThatCannotBeWrittenIsAnErrorAtOnce) {
+    write_file(folder_.string() + ".file", "x");
+    MapShellOptions options;
+    options.output = folder_.string() + ".file";
+    EXPECT_THROW(MapShell(bus_, options), std::exception);
+    std::filesystem::remove(options.output);
+}
+
+}  // namespace
+}  // namespace planemap

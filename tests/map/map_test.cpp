@@ -1,0 +1,478 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "map/map.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <set>
+
+#include "map/scene.hpp"
+
+namespace planemap {
+namespace {
+
+using scene::camera_at;
+using scene::facing;
+using scene::keyframe;
+using scene::Rectangle;
+using scene::region_of;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+constexpr double kDeg = std::numbers::pi / 180;
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+// A room of 4 x 3 x 2.4 m whose inside is seen, and a table in it.
+std::vector<Rectangle> room() {
+    return {{facing({0, 0, 0}, {0, 0, 1}, {1, 0, 0}), 2, 1.5, {}},
+            {facing({2, 0, 1.2}, {-1, 0, 0}, {0, 1, 0}), 1.5, 1.2, {}},
+            {facing({-2, 0, 1.2}, {1, 0, 0}, {0, 1, 0}), 1.5, 1.2, {}},
+            {facing({0, 1.5, 1.2}, {0, -1, 0}, {1, 0, 0}), 2, 1.2, {}},
+            {facing({0.5, 0.3, 0.75}, {0, 0, 1}, {0.8, 0.6, 0}), 0.6, 0.4, {}}};
+}
+
+KeyframeTrajectory trajectory_of(const std::vector<Pose>& poses, int revision = 1) {
+    KeyframeTrajectory trajectory;
+    trajectory.revision = revision;
+    for (const Pose& pose : poses)
+        trajectory.keyframes.push_back({static_cast<int>(trajectory.keyframes.size()), 0, pose});
+    return trajectory;
+}
+
+const MapPlane* nearest(const PlaneMap& map, const MapPlane& wanted) {
+    const MapPlane* best = nullptr;
+    double best_apart = 0.1;
+    for (const MapPlane& plane : map.planes) {
+        const double apart =
+            angle_between(plane.region.plane.normal, wanted.region.plane.normal) +
+            (plane.region.box.frame_from_box.translation() - wanted.region.box.frame_from_box.translation())
+                .norm();
+        if (apart < best_apart) {
+            best = &plane;
+            best_apart = apart;
+        }
+    }
+    return best;
+}
+
+/// The same planes, whatever their order and ids.
+void expect_same_planes(const PlaneMap& a, const PlaneMap& b, double tolerance_m) {
+    ASSERT_EQ(a.planes.size(), b.planes.size());
+    for (const MapPlane& plane : a.planes) {
+        const MapPlane* twin = nearest(b, plane);
+        ASSERT_NE(twin, nullptr);
+        EXPECT_NEAR(angle_between(plane.region.plane.normal, twin->region.plane.normal), 0, tolerance_m);
+        EXPECT_NEAR(plane.region.plane.d, twin->region.plane.d, tolerance_m);
+        EXPECT_NEAR(plane.region.moments.count, twin->region.moments.count, 1e-6);
+        EXPECT_NEAR((plane.region.box.half_extents - twin->region.box.half_extents).norm(), 0,
+                    20 * tolerance_m);
+        EXPECT_NEAR(plane.area, twin->area, 0.01 * plane.area + 0.03) << "half a cell around";
+        EXPECT_EQ(plane.keyframes, twin->keyframes);
+    }
+    EXPECT_EQ(a.lines.size(), b.lines.size());
+    EXPECT_EQ(a.points.size(), b.points.size());
+}
+
+void expect_identical(const PlaneMap& a, const PlaneMap& b) {
+    ASSERT_EQ(a.planes.size(), b.planes.size());
+    for (std::size_t i = 0; i < a.planes.size(); ++i) {
+        EXPECT_EQ(a.planes[i].id, b.planes[i].id);
+        EXPECT_EQ(a.planes[i].region.plane.normal, b.planes[i].region.plane.normal);
+        EXPECT_EQ(a.planes[i].region.plane.d, b.planes[i].region.plane.d);
+        EXPECT_EQ(a.planes[i].region.outline.rings, b.planes[i].region.outline.rings);
+        EXPECT_EQ(a.planes[i].keyframes, b.planes[i].keyframes);
+    }
+    ASSERT_EQ(a.lines.size(), b.lines.size());
+    for (std::size_t i = 0; i < a.lines.size(); ++i) EXPECT_EQ(a.lines[i].from, b.lines[i].from);
+    ASSERT_EQ(a.points.size(), b.points.size());
+    for (std::size_t i = 0; i < a.points.size(); ++i) EXPECT_EQ(a.points[i].position, b.points[i].position);
+}
+
+TEST(PlaneMapper, MergedPlaneIsTheFitToAllPoints) {
+    const Rectangle left{facing({-0.8, 0, 3}, {0, 0, -1}, {1, 0, 0}), 1, 1, {}};
+    const Rectangle right{facing({0.7, 0.2, 3.01}, {0.01, 0, -1}, {1, 0, 0}), 0.8, 0.7, {}};
+    Keyframe seen;
+    seen.id = 0;
+    seen.regions = {region_of(left, Pose::Identity(), 0.02, 0.003, 1),
+                    region_of(right, Pose::Identity(), 0.02, 0.003, 2)};
+    // Both count alike, whatever their depth, when sensor noise is far below the error of poses.
+    MapOptions options;
+    options.noise = {0, 0, 0};
+    PlaneMapper mapper(options);
+    mapper.add(seen, Pose::Identity());
+    ASSERT_EQ(mapper.map().planes.size(), 1u);
+
+    Moments all;
+    for (const auto& [rectangle, seed] : {std::pair(left, 1), std::pair(right, 2)}) {
+        std::mt19937_64 random(static_cast<std::uint64_t>(seed));
+        for (const auto& p : scene::points_on(rectangle, 0.02, 0.003, random)) all.add(p);
+    }
+    const PlaneFit fit = fit_plane(all);
+    const PlanarRegion& merged = mapper.map().planes[0].region;
+    EXPECT_EQ(merged.moments.count, all.count);
+    EXPECT_NEAR((merged.moments.scatter - all.scatter).norm(), 0, 1e-6);
+    EXPECT_NEAR(angle_between(merged.plane.normal, fit.plane.normal), 0, 1e-7);
+    EXPECT_NEAR(merged.plane.d, fit.plane.d, 1e-9);
+    EXPECT_NEAR(merged.rms, fit.rms, 1e-9);
+}
+
+TEST(PlaneMapper, BoxKeepsTheExtrema) {
+    const Rectangle left{facing({-1, 0, 3}, {0, 0, -1}, {1, 0, 0}), 1, 0.5, {}};
+    const Rectangle right{facing({1.2, 0, 3}, {0, 0, -1}, {1, 0, 0}), 0.9, 0.4, {}};
+    PlaneMapper mapper;
+    mapper.add(keyframe(0, {left, right}, Pose::Identity()), Pose::Identity());
+    ASSERT_EQ(mapper.map().planes.size(), 1u);
+    const Box& box = mapper.map().planes[0].region.box;
+    EXPECT_NEAR(box.half_extents.x(), 2.05, 0.02);
+    EXPECT_NEAR(box.half_extents.y(), 0.5, 0.02);
+    EXPECT_NEAR(mapper.map().planes[0].area, 2 + 1.8 * 0.8, 0.1);
+}
+
+TEST(PlaneMapper, AFarViewDoesNotOutweighNearOnes) {
+    PlaneMapper mapper;
+    const Rectangle wall{facing({0, 0, 0}, {0, 0, -1}, {1, 0, 0}), 0.8, 0.6, {}};
+    Rectangle misplaced = wall;
+    misplaced.world_from_face.translation().z() = 0.04;
+    for (int i = 0; i < 10; ++i)
+        mapper.add(keyframe(i, {wall}, camera_at({0, 0, -1})), camera_at({0, 0, -1}));
+    mapper.add(keyframe(10, {misplaced}, camera_at({0, 0, -4})), camera_at({0, 0, -4}));
+    ASSERT_EQ(mapper.map().planes.size(), 1u);
+    const PlanarRegion& region = mapper.map().planes[0].region;
+    EXPECT_LT(std::abs(region.plane.signed_distance({0, 0, 0})), 0.04 / 11 / 2);
+    EXPECT_NEAR(region.moments.count, 11 * 80 * 60, 1) << "the moments stay exact";
+}
+
+TEST(PlaneMapper, TheTwoSidesOfAWallAreTwoPlanes) {
+    const Rectangle front{facing({0, 0, 2}, {0, 0, -1}, {1, 0, 0}), 1, 1, {}};
+    const Rectangle back{facing({0, 0, 2.02}, {0, 0, 1}, {1, 0, 0}), 1, 1, {}};
+    PlaneMapper mapper;
+    mapper.add(keyframe(0, {front}, camera_at({0, 0, 0})), camera_at({0, 0, 0}));
+    mapper.add(keyframe(1, {back}, camera_at({0, 0, 4}, 3)), camera_at({0, 0, 4}, 3));
+    ASSERT_EQ(mapper.map().planes.size(), 2u);
+    EXPECT_LT(mapper.map().planes[0].region.plane.normal.z(), -0.999);
+    EXPECT_GT(mapper.map().planes[1].region.plane.normal.z(), 0.999);
+}
+
+TEST(PlaneMapper, MergesTransitively) {
+    // Two parts of a wall 1.2 m apart stay two until the part between them is seen.
+    const auto part = [](double x) {
+        return Rectangle{facing({x, 0, 2}, {0, 0, -1}, {1, 0, 0}), 0.4, 0.5, {}};
+    };
+    PlaneMapper mapper;
+    const Pose camera = Pose::Identity();
+    mapper.add(keyframe(0, {part(-1)}, camera), camera);
+    mapper.add(keyframe(1, {part(1)}, camera), camera);
+    ASSERT_EQ(mapper.map().planes.size(), 2u);
+    const int first = mapper.map().planes[0].id;
+    mapper.add(keyframe(2, {part(0)}, camera), camera);
+    ASSERT_EQ(mapper.map().planes.size(), 1u);
+    EXPECT_EQ(mapper.map().planes[0].id, first) << "the older id stays";
+    EXPECT_THAT(mapper.map().planes[0].keyframes, ElementsAre(0, 1, 2));
+}
+
+TEST(PlaneMapper, NoPairSatisfiesTheRulesAfterwards) {
+    std::mt19937_64 random(8);
+    std::uniform_real_distribution<double> at(-2, 2), tilt(-0.15, 0.15), size(0.1, 0.6);
+    PlaneMapper mapper;
+    for (int i = 0; i < 40; ++i) {
+        std::vector<Rectangle> seen;
+        for (int k = 0; k < 4; ++k) {
+            seen.push_back({facing({at(random), at(random), 3 + 0.02 * at(random)},
+                                   {tilt(random), tilt(random), -1}, {1, 0, 0}),
+                            size(random),
+                            size(random),
+                            {}});
+        }
+        mapper.add(keyframe(i, seen, Pose::Identity()), Pose::Identity());
+    }
+    const auto& planes = mapper.map().planes;
+    double inliers = 0;
+    for (const MapPlane& plane : planes) inliers += plane.region.moments.count;
+    EXPECT_GT(inliers, 1000);
+    EXPECT_LT(planes.size(), 40u);
+    for (std::size_t i = 0; i < planes.size(); ++i) {
+        EXPECT_TRUE(is_valid(planes[i].region));
+        EXPECT_FALSE(rings_cross(planes[i].region.outline));
+    }
+}
+
+TEST(PlaneMapper, AnOpenDoorIsAHole) {
+    Rectangle wall{
+        facing({0, 0, 2}, {0, 0, -1}, {1, 0, 0}), 2, 1.2, {scene::rectangle_ring(-0.4, -0.9, 0.4, 0.9)}};
+    PlaneMapper mapper;
+    for (int i = 0; i < 5; ++i)
+        mapper.add(keyframe(i, {wall}, camera_at({0.1 * i, 0, 0}), 0.003), camera_at({0.1 * i, 0, 0}));
+    ASSERT_EQ(mapper.map().planes.size(), 1u);
+    const MapPlane& plane = mapper.map().planes[0];
+    EXPECT_EQ(plane.region.outline.rings.size(), 2u);
+    EXPECT_NEAR(plane.area, 4 * 2.4 - 0.8 * 1.8, 0.15);
+    EXPECT_GT(distance(plane.region, {0, 0, 2}), 0.3);
+    EXPECT_LT(distance(plane.region, {1, 0, 2}), 0.01);
+}
+
+TEST(PlaneMapper, KeyframesAndTrajectoryMayComeInAnyOrder) {
+    std::vector<Keyframe> keyframes;
+    std::vector<Pose> poses;
+    for (int i = 0; i < 6; ++i) {
+        poses.push_back(camera_at({0.1 * i, 0, 1}, 0.2 * i));
+        keyframes.push_back(keyframe(i, room(), poses.back(), 0.002));
+    }
+    PlaneMapper keyframes_first, trajectory_first, mixed, with_poses;
+    for (const Keyframe& k : keyframes) keyframes_first.add(k);
+    EXPECT_TRUE(keyframes_first.map().planes.empty());
+    EXPECT_EQ(keyframes_first.waiting(), 6u);
+    keyframes_first.update(trajectory_of(poses));
+    EXPECT_EQ(keyframes_first.waiting(), 0u);
+    trajectory_first.update(trajectory_of(poses));
+    for (const Keyframe& k : keyframes) trajectory_first.add(k);
+    for (const std::size_t i : {4, 1, 5}) mixed.add(keyframes[i]);
+    mixed.update(trajectory_of(poses));
+    for (const std::size_t i : {3, 0, 2}) mixed.add(keyframes[i]);
+    for (std::size_t i = 0; i < 6; ++i) with_poses.add(keyframes[i], poses[i]);
+
+    EXPECT_EQ(keyframes_first.map().planes.size(), 5u);
+    expect_same_planes(keyframes_first.map(), trajectory_first.map(), 1e-9);
+    expect_same_planes(keyframes_first.map(), with_poses.map(), 1e-9);
+    expect_same_planes(keyframes_first.map(), mixed.map(), 1e-9);
+    EXPECT_EQ(mixed.map().utime, keyframes.back().utime);
+    EXPECT_EQ(mixed.map().revision, 1);
+}
+
+TEST(PlaneMapper, OrderOfIdsHardlyMatters) {
+    PlaneMapper forwards, backwards;
+    for (int i = 0; i < 8; ++i) {
+        const Pose pose = camera_at({0.1 * i, 0, 1}, 0.2 * i);
+        Keyframe seen = keyframe(i, room(), pose, 0.004);
+        forwards.add(seen, pose);
+        seen.id = 7 - i;
+        std::reverse(seen.regions.begin(), seen.regions.end());
+        backwards.add(seen, pose);
+    }
+    expect_same_planes(forwards.map(), backwards.map(), 2e-3);
+}
+
+TEST(PlaneMapper, RebuildEqualsAFreshBuildAndKeepsIds) {
+    PlaneMapper corrected, fresh;
+    std::vector<Pose> after;
+    for (int i = 0; i < 6; ++i) {
+        const Pose truth = camera_at({0.1 * i, 0, 1}, 0.2 * i);
+        const Keyframe seen = keyframe(i, room(), truth, 0.002);
+        const Pose drifted = camera_at({0.02 * i, 0.01 * i, 0.03 * i}, 0.002 * i) * truth;
+        corrected.add(seen, drifted);
+        after.push_back(truth);
+        fresh.add(seen, truth);
+    }
+    std::map<int, Eigen::Vector3d> before;
+    for (const MapPlane& plane : corrected.map().planes)
+        before[plane.id] = plane.region.box.frame_from_box.translation();
+    corrected.update(trajectory_of(after, 3));
+    EXPECT_EQ(corrected.rebuilds(), 1u);
+    EXPECT_EQ(corrected.map().revision, 3);
+    expect_same_planes(corrected.map(), fresh.map(), 1e-9);
+    int kept = 0;
+    for (const MapPlane& plane : corrected.map().planes) {
+        if (!before.contains(plane.id)) continue;
+        ++kept;
+        EXPECT_LT((plane.region.box.frame_from_box.translation() - before[plane.id]).norm(), 0.5);
+    }
+    EXPECT_EQ(kept, 5);
+}
+
+TEST(PlaneMapper, IdsAreKeptWhenPlanesPart) {
+    // A drifted view doubles a wall; the correction brings both together, and the next one parts them again.
+    const Rectangle wall{facing({0, 0, 2}, {0, 0, -1}, {1, 0, 0}), 1, 1, {}};
+    const Pose here = Pose::Identity(), off = camera_at({0, 0, 0.2});
+    PlaneMapper mapper;
+    for (int i = 0; i < 3; ++i) mapper.add(keyframe(i, {wall}, here), here);
+    mapper.add(keyframe(3, {wall}, here), off);
+    ASSERT_EQ(mapper.map().planes.size(), 2u);
+    const int first = mapper.map().planes[0].id, second = mapper.map().planes[1].id;
+    mapper.update(trajectory_of({here, here, here, here}));
+    ASSERT_EQ(mapper.map().planes.size(), 1u);
+    EXPECT_EQ(mapper.map().planes[0].id, first);
+    mapper.update(trajectory_of({here, here, here, off}));
+    ASSERT_EQ(mapper.map().planes.size(), 2u);
+    EXPECT_EQ(mapper.map().planes[0].id, first);
+    EXPECT_GT(mapper.map().planes[1].id, second) << "an id that is gone is not used again";
+}
+
+TEST(PlaneMapper, SmallMovesDoNotRebuild) {
+    PlaneMapper mapper;
+    const Pose pose = camera_at({0, 0, 1});
+    mapper.add(keyframe(0, room(), pose), pose);
+    mapper.update(trajectory_of({camera_at({0.001, 0, 1})}));
+    EXPECT_EQ(mapper.rebuilds(), 0u);
+    mapper.update(trajectory_of({camera_at({0.003, 0, 1})}));
+    EXPECT_EQ(mapper.rebuilds(), 1u);
+}
+
+TEST(PlaneMapper, ARepeatedKeyframeCountsOnce) {
+    PlaneMapper once, twice;
+    const Pose pose = camera_at({0, 0, 1});
+    once.add(keyframe(0, room(), pose), pose);
+    twice.add(keyframe(0, room(), pose), pose);
+    twice.add(keyframe(0, room(), pose), pose);
+    expect_same_planes(once.map(), twice.map(), 1e-9);
+}
+
+TEST(PlaneMapper, RoomHasItsLinesAndCorners) {
+    PlaneMapper mapper;
+    for (int i = 0; i < 3; ++i) {
+        const Pose pose = camera_at({0.1 * i, 0, 1}, 0.3 * i);
+        mapper.add(keyframe(i, room(), pose, 0.002), pose);
+    }
+    const PlaneMap& map = mapper.map();
+    ASSERT_EQ(map.planes.size(), 5u);
+    EXPECT_EQ(map.lines.size(), 5u) << "floor with three walls, and two edges between walls";
+    EXPECT_EQ(map.points.size(), 2u);
+    for (const IntersectionPoint& point : map.points) {
+        EXPECT_NEAR(std::abs(point.position.x()), 2, 0.005);
+        EXPECT_NEAR(point.position.y(), 1.5, 0.005);
+        EXPECT_NEAR(point.position.z(), 0, 0.005);
+    }
+}
+
+TEST(PlaneMapper, IntersectionsFollowChangedPlanes) {
+    // Intersections kept step by step are those of a map built at once.
+    PlaneMapper stepwise, at_once;
+    std::vector<Pose> poses;
+    const auto planes = room();
+    for (int i = 0; i < 5; ++i) {
+        poses.push_back(camera_at({0.1 * i, 0, 1}, 0.2 * i));
+        const Keyframe seen = keyframe(i, {planes[static_cast<std::size_t>(i)]}, poses.back(), 0.002);
+        stepwise.add(seen, poses.back());
+        at_once.add(seen);
+    }
+    at_once.update(trajectory_of(poses));
+    expect_identical(stepwise.map(), at_once.map());
+}
+
+TEST(PlaneMapper, SmallAndSeldomSeenPlanesAreHeldBack) {
+    MapOptions options;
+    options.min_keyframes = 2;
+    options.min_area_m2 = 0.1;
+    PlaneMapper mapper(options);
+    const Rectangle wall{facing({0, 0, 2}, {0, 0, -1}, {1, 0, 0}), 0.5, 0.5, {}};
+    const Rectangle scrap{facing({2, 0, 2}, {0, -1, 0}, {1, 0, 0}), 0.1, 0.1, {}};
+    mapper.add(keyframe(0, {wall, scrap}, Pose::Identity()), Pose::Identity());
+    EXPECT_TRUE(mapper.map().planes.empty());
+    mapper.add(keyframe(1, {wall, scrap}, Pose::Identity()), Pose::Identity());
+    EXPECT_EQ(mapper.map().planes.size(), 1u);
+}
+
+TEST(PlaneMapper, MemoryOfTheMapDoesNotGrowWithRevisits) {
+    PlaneMapper mapper;
+    std::size_t after_first_lap = 0;
+    for (int i = 0; i < 40; ++i) {
+        const Pose pose = camera_at({0.1 * (i % 5), 0, 1}, 0.2 * (i % 5));
+        mapper.add(keyframe(i, room(), pose), pose);
+        if (i == 9) after_first_lap = mapper.memory_bytes();
+    }
+    EXPECT_GT(after_first_lap, 5 * sizeof(MapPlane));
+    EXPECT_LT(mapper.memory_bytes(), after_first_lap + 5 * 100 * sizeof(int));
+    EXPECT_GT(mapper.working_bytes(), mapper.memory_bytes());
+}
+
+TEST(PlaneMapper, RejectsWhatIsNotARegion) {
+    const PlanarRegion good = region_of(room()[0], camera_at({0, 0, 1}));
+    Keyframe hostile;
+    hostile.id = 0;
+    hostile.regions.assign(8, good);
+    hostile.regions[0].plane.normal.x() = kNan;
+    hostile.regions[1].moments.sum.y() = kNan;
+    hostile.regions[2].moments = {};
+    hostile.regions[3].outline.rings[0][0].x() = kNan;
+    hostile.regions[4].box.half_extents.x() = 1e9;
+    hostile.regions[5].box.frame_from_box.translation().x() = 1e9;
+    hostile.regions[6].moments.scatter = hostile.regions[6].moments.sum *
+                                         hostile.regions[6].moments.sum.transpose() /
+                                         hostile.regions[6].moments.count;  // all points in one
+    PlaneMapper mapper;
+    mapper.add(hostile, camera_at({0, 0, 1}));
+    EXPECT_EQ(mapper.rejected(), 7u);
+    EXPECT_EQ(mapper.map().planes.size(), 1u);
+}
+
+TEST(PlaneMapper, SurvivesOutlinesFarFromTheirBox) {
+    Keyframe hostile;
+    hostile.id = 0;
+    hostile.regions = {region_of(room()[0], camera_at({0, 0, 1}))};
+    hostile.regions[0].outline.rings[0][0] = {1e12, -1e12};
+    PlaneMapper mapper;
+    mapper.add(hostile, camera_at({0, 0, 1}));
+    EXPECT_EQ(mapper.rejected(), 1u);
+    EXPECT_TRUE(mapper.map().planes.empty());
+}
+
+TEST(PlaneMapper, IgnoresPosesThatAreNone) {
+    Pose bad = Pose::Identity();
+    bad.translation().x() = kNan;
+    PlaneMapper mapper;
+    mapper.add(keyframe(0, room(), Pose::Identity()), bad);
+    EXPECT_EQ(mapper.waiting(), 1u);
+    mapper.update(trajectory_of({bad}));
+    EXPECT_EQ(mapper.waiting(), 1u);
+    mapper.update(trajectory_of({camera_at({1e9, 0, 0})}));
+    EXPECT_TRUE(mapper.map().planes.empty()) << "too far out for millimetres";
+    mapper.update(trajectory_of({Pose::Identity()}));
+    EXPECT_EQ(mapper.map().planes.size(), 5u);
+}
+
+TEST(PlaneMapper, EmptyInput) {
+    PlaneMapper mapper;
+    mapper.update({});
+    mapper.add(Keyframe{});
+    mapper.add(Keyframe{}, Pose::Identity());
+    EXPECT_TRUE(mapper.map().planes.empty());
+    EXPECT_GT(mapper.memory_bytes(), 0u);
+}
+
+TEST(PlaneMapper, TakesThousandsOfRegions) {
+    std::mt19937_64 random(9);
+    std::uniform_real_distribution<double> at(-15, 15), unit(-1, 1), size(0.05, 0.5);
+    PlaneMapper mapper;
+    std::vector<Pose> poses;
+    for (int i = 0; i < 60; ++i) {
+        std::vector<Rectangle> seen;
+        for (int k = 0; k < 50; ++k) {
+            seen.push_back({facing({at(random), at(random), at(random)},
+                                   {unit(random), unit(random), unit(random)}, {1, 0, 0}),
+                            size(random),
+                            size(random),
+                            {}});
+        }
+        poses.push_back(Pose::Identity());
+        Keyframe waiting;
+        waiting.id = i;
+        for (const Rectangle& r : seen) waiting.regions.push_back(region_of(r, poses.back(), 0.05));
+        mapper.add(waiting);
+    }
+    mapper.update(trajectory_of(poses));
+    EXPECT_GT(mapper.map().planes.size(), 1000u);
+    std::set<int> ids;
+    for (const MapPlane& plane : mapper.map().planes) EXPECT_TRUE(ids.insert(plane.id).second);
+    for (const IntersectionLine& line : mapper.map().lines) {
+        EXPECT_LT(line.plane_a, line.plane_b);
+        EXPECT_TRUE(ids.contains(line.plane_a) && ids.contains(line.plane_b));
+    }
+}
+
+TEST(MapOptions, NamesAllBadFields) {
+    MapOptions options;
+    options.merge_angle_deg = -1;
+    options.outline_cell_m = kNan;
+    try {
+        PlaneMapper{options};
+        FAIL();
+    } catch (const std::invalid_argument& error) {
+        EXPECT_THAT(error.what(), HasSubstr("merge_angle_deg"));
+        EXPECT_THAT(error.what(), HasSubstr("outline_cell_m"));
+    }
+}
+
+}  // namespace
+}  // namespace planemap

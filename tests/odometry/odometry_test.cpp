@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "odometry/odometry.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <stdexcept>
+
+#include "room.hpp"
+
+namespace planemap {
+namespace {
+
+constexpr std::int64_t kPeriod = 33333;  // microseconds
+
+/// A gentle hand-like path.
+Pose room_from_camera_at(int frame) {
+    const double t = frame / 30.0;
+    Twist twist;
+    twist << 0.15 * std::sin(1.3 * t), 0.08 * std::sin(2.1 * t), 0.1 * (1 - std::cos(t)),
+        0.05 * std::sin(1.7 * t), 0.12 * std::sin(1.1 * t), 0.06 * std::sin(0.9 * t);
+    return pose_from_twist(twist);
+}
+
+class Room : public ::testing::Test {
+  protected:
+    OdometryResult feed(const RenderedFrame& frame, std::int64_t utime) {
+        return odometry_.process({utime, utime, &frame.gray, &frame.depth, &camera_, {}});
+    }
+    OdometryResult feed_depth(const RenderedFrame& frame, std::int64_t utime) {
+        return odometry_.process({utime, 0, nullptr, &frame.depth, &camera_, {}});
+    }
+    RenderedFrame view(int frame) const { return render_room(camera_, room_from_camera_at(frame)); }
+
+    CameraInfo camera_ = room_camera();
+    Odometry odometry_{OdometryOptions{}};
+};
+
+void expect_near(const Pose& a, const Pose& b, double metres, double radians) {
+    EXPECT_LT((a.translation() - b.translation()).norm(), metres);
+    EXPECT_LT(rotation_angle(a.inverse() * b), radians);
+}
+
+TEST_F(Room, FirstFrameIsKeyframeZeroAtTheIdentity) {
+    const OdometryResult result = feed(view(0), 1000);
+    EXPECT_EQ(result.estimate.status, TrackingStatus::kTracked);
+    EXPECT_TRUE(result.estimate.odom_from_camera.isApprox(Pose::Identity()));
+    ASSERT_TRUE(result.keyframe);
+    EXPECT_EQ(result.keyframe->id, 0);
+    EXPECT_EQ(result.keyframe->previous_id, -1);
+    EXPECT_GT(result.keyframe->features.size(), 50u);
+}
+
+TEST_F(Room, FollowsAKnownMotion) {
+    int keyframes = 0;
+    for (int i = 0; i < 90; ++i) {
+        const OdometryResult result = feed(view(i), (i + 1) * kPeriod);
+        ASSERT_EQ(result.estimate.status, TrackingStatus::kTracked) << "frame " << i;
+        expect_near(result.estimate.odom_from_camera, room_from_camera_at(i), 0.01, 0.005);
+        EXPECT_EQ(result.estimate.utime, (i + 1) * kPeriod);
+        if (i > 0) {
+            EXPECT_GT(result.estimate.covariance.diagonal().minCoeff(), 0);
+        }
+        keyframes += result.keyframe.has_value();
+    }
+    EXPECT_LT(keyframes, 30);
+}
+
+TEST_F(Room, KeyframesAreChainedByTheirEdges) {
+    std::vector<Keyframe> keyframes;
+    for (int i = 0; i < 40; ++i)
+        if (auto result = feed(view(4 * i), (i + 1) * kPeriod); result.keyframe)
+            keyframes.push_back(*result.keyframe);
+    ASSERT_GT(keyframes.size(), 1u);
+    for (std::size_t i = 1; i < keyframes.size(); ++i) {
+        const Keyframe& keyframe = keyframes[i];
+        EXPECT_EQ(keyframe.id, static_cast<int>(i));
+        ASSERT_GE(keyframe.previous_id, 0);
+        const Keyframe& previous = keyframes[static_cast<std::size_t>(keyframe.previous_id)];
+        expect_near(previous.odom_from_camera * keyframe.previous_from_camera, keyframe.odom_from_camera,
+                    1e-6, 1e-6);
+    }
+}
+
+TEST_F(Room, SameInputSamePoses) {
+    Odometry other{OdometryOptions{}};
+    for (int i = 0; i < 20; ++i) {
+        const RenderedFrame frame = view(3 * i);
+        const std::int64_t utime = (i + 1) * kPeriod;
+        const Pose a = feed(frame, utime).estimate.odom_from_camera;
+        const Pose b =
+            other.process({utime, utime, &frame.gray, &frame.depth, &camera_, {}}).estimate.odom_from_camera;
+        EXPECT_EQ((a.matrix() - b.matrix()).cwiseAbs().maxCoeff(), 0);
+    }
+}
+
+TEST_F(Room, DepthAloneIsFollowed) {
+    for (int i = 0; i < 30; ++i) {
+        const OdometryResult result = feed_depth(view(i), (i + 1) * kPeriod);
+        ASSERT_NE(result.estimate.status, TrackingStatus::kLost) << "frame " << i;
+        expect_near(result.estimate.odom_from_camera, room_from_camera_at(i), 0.02, 0.01);
+    }
+}
+
+TEST_F(Room, ColourMayGoAndComeBack) {
+    for (int i = 0; i < 40; ++i) {
+        const std::int64_t utime = (i + 1) * kPeriod;
+        const OdometryResult result = i / 10 % 2 ? feed_depth(view(i), utime) : feed(view(i), utime);
+        ASSERT_NE(result.estimate.status, TrackingStatus::kLost) << "frame " << i;
+        expect_near(result.estimate.odom_from_camera, room_from_camera_at(i), 0.02, 0.01);
+    }
+}
+
+TEST_F(Room, ABareWallIsDegenerateAndItsDistanceIsStillKnown) {
+    const std::vector<Plane> wall{{{0, 0, -1}, 2}};
+    for (int i = 0; i < 10; ++i) {
+        Pose pose = Pose::Identity();
+        pose.translation().z() = 0.005 * i;
+        const RenderedFrame frame = render_room(camera_, pose, false, wall);
+        const OdometryResult result = feed(frame, (i + 1) * kPeriod);
+        if (i == 0) continue;
+        ASSERT_EQ(result.estimate.status, TrackingStatus::kDegenerate) << "frame " << i;
+        EXPECT_NEAR(result.estimate.odom_from_camera.translation().z(), 0.005 * i, 0.005);
+        EXPECT_GT(result.estimate.covariance(0, 0), 10 * result.estimate.covariance(2, 2));
+    }
+}
+
+TEST_F(Room, BlackFramesAreLostAndTheViewIsFoundAgain) {
+    for (int i = 0; i < 10; ++i) feed(view(i), (i + 1) * kPeriod);
+    const RenderedFrame black{GrayImage(320, 240, 0), DepthImage(320, 240, 0)};
+    for (int i = 10; i < 15; ++i)
+        EXPECT_EQ(feed(black, (i + 1) * kPeriod).estimate.status, TrackingStatus::kLost);
+    for (int i = 15; i < 20; ++i) {
+        const OdometryResult result = feed(view(i), (i + 1) * kPeriod);
+        ASSERT_EQ(result.estimate.status, TrackingStatus::kTracked);
+        expect_near(result.estimate.odom_from_camera, room_from_camera_at(i), 0.02, 0.01);
+    }
+}
+
+TEST_F(Room, NothingToSeeIsNoKeyframe) {
+    const RenderedFrame black{GrayImage(320, 240, 0), DepthImage(320, 240, 0)};
+    for (int i = 0; i < 40; ++i) {
+        const OdometryResult result = feed(black, (i + 1) * kPeriod);
+        EXPECT_EQ(result.estimate.status, TrackingStatus::kLost);
+        EXPECT_FALSE(result.keyframe);
+    }
+    EXPECT_EQ(feed(view(0), 50 * kPeriod).estimate.status, TrackingStatus::kTracked);
+}
+
+TEST_F(Room, AfterALongLossTheMapGoesOnWithoutAnEdge) {
+    feed(view(0), kPeriod);
+    Pose elsewhere = Pose::Identity();
+    elsewhere.linear() = so3_exp({0, 3.0, 0});
+    std::vector<Plane> other_side = room_planes();
+    other_side.push_back({{0, 0, 1}, 1.0});
+    std::optional<Keyframe> keyframe;
+    for (int i = 1; i < 30 && !keyframe; ++i)
+        keyframe = feed(render_room(camera_, elsewhere, true, other_side), (i + 1) * kPeriod).keyframe;
+    ASSERT_TRUE(keyframe);
+    EXPECT_EQ(keyframe->id, 1);
+    EXPECT_EQ(keyframe->previous_id, -1);
+}
+
+TEST_F(Room, TimeThatGoesBackStartsANewKeyframe) {
+    for (int i = 0; i < 5; ++i) feed(view(i), (i + 100) * kPeriod);
+    const OdometryResult result = feed(view(0), kPeriod);
+    EXPECT_EQ(result.estimate.status, TrackingStatus::kTracked);
+    ASSERT_TRUE(result.keyframe);
+    EXPECT_EQ(result.keyframe->previous_id, -1);
+    EXPECT_EQ(feed(view(1), 2 * kPeriod).estimate.status, TrackingStatus::kTracked);
+}
+
+TEST_F(Room, AnotherCameraStartsANewKeyframe) {
+    feed(view(0), kPeriod);
+    camera_.color.fx = camera_.color.fy = camera_.depth.fx = camera_.depth.fy = 240;
+    const OdometryResult result = feed(view(1), 2 * kPeriod);
+    ASSERT_TRUE(result.keyframe);
+    EXPECT_EQ(result.keyframe->previous_id, -1);
+}
+
+TEST_F(Room, RegionsRegulariseAndBrokenOnesAreIgnored) {
+    const RenderedFrame frame = view(0);
+    PlanarRegion wall;
+    wall.plane = {{0, 0, -1}, 3};
+    for (const double x : {-1.5, 1.5})
+        for (const double y : {-1.0, 1.0}) wall.moments.add({x, y, 3});
+    wall.box.frame_from_box.linear() = plane_axes(wall.plane.normal, {1, 0, 0});
+    wall.box.frame_from_box.translation() = Eigen::Vector3d(0, 0, 3);
+    wall.box.half_extents = {1.5, 1, 0};
+    PlanarRegion broken = wall;
+    broken.plane.d = std::numeric_limits<double>::quiet_NaN();
+    const std::vector<PlanarRegion> regions{broken, wall};
+    const OdometryResult result =
+        odometry_.process({kPeriod, kPeriod, &frame.gray, &frame.depth, &camera_, regions});
+    ASSERT_TRUE(result.keyframe);
+    ASSERT_EQ(result.keyframe->regions.size(), 1u);
+    int planar = 0;
+    for (const Feature& feature : result.keyframe->features) {
+        if (feature.region < 0) continue;
+        ++planar;
+        EXPECT_EQ(feature.region, 0);
+        EXPECT_NEAR(feature.point.z(), 3, 1e-5);
+    }
+    EXPECT_GT(planar, 20);
+}
+
+TEST_F(Room, WrongSizesAndMissingPartsAreRefused) {
+    const RenderedFrame frame = view(0);
+    const GrayImage small(10, 10, 0);
+    const DepthImage thin(320, 239, 0);
+    EXPECT_THROW(odometry_.process({1, 1, &small, &frame.depth, &camera_, {}}), std::invalid_argument);
+    EXPECT_THROW(odometry_.process({1, 1, &frame.gray, &thin, &camera_, {}}), std::invalid_argument);
+    EXPECT_THROW(odometry_.process({1, 1, &frame.gray, nullptr, &camera_, {}}), std::invalid_argument);
+    EXPECT_THROW(odometry_.process({1, 1, &frame.gray, &frame.depth, nullptr, {}}), std::invalid_argument);
+    EXPECT_EQ(feed(frame, 1).estimate.status, TrackingStatus::kTracked);
+}
+
+TEST(OdometryOptions, EveryBadFieldIsNamed) {
+    OdometryOptions options;
+    EXPECT_NO_THROW(options.validate());
+    options.method = "magic";
+    options.max_points = -1;
+    options.pixel_sigma_px = std::numeric_limits<double>::quiet_NaN();
+    try {
+        Odometry odometry(options);
+        FAIL() << "accepted";
+    } catch (const std::invalid_argument& error) {
+        const std::string text = error.what();
+        EXPECT_NE(text.find("method"), std::string::npos);
+        EXPECT_NE(text.find("max_points"), std::string::npos);
+        EXPECT_NE(text.find("pixel_sigma_px"), std::string::npos);
+    }
+}
+
+}  // namespace
+}  // namespace planemap

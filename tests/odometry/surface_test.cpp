@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "odometry/surface.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+
+#include "room.hpp"
+
+namespace planemap {
+namespace {
+
+TEST(Surface, CellsLieOnThePlanesOfTheRoom) {
+    const CameraInfo camera = room_camera();
+    const RenderedFrame frame = render_room(camera, Pose::Identity());
+    const Surface surface(frame.depth, camera.color, camera, 16);
+    EXPECT_GT(surface.cells(), 150);
+    const Plane* wall = surface.at({160, 120});
+    ASSERT_TRUE(wall);
+    EXPECT_LT(angle_between(wall->normal, {0, 0, -1}), 0.01);
+    EXPECT_NEAR(wall->d, 3, 0.01);
+    EXPECT_EQ(surface.at({-20, 5}), nullptr);
+    EXPECT_EQ(surface.at({1e9, 5}), nullptr);
+}
+
+TEST(Surface, EmptyDepthHasNone) {
+    const CameraInfo camera = room_camera();
+    const DepthImage empty(320, 240, 0);
+    EXPECT_EQ(Surface(empty, camera.color, camera, 16).cells(), 0);
+    EXPECT_TRUE(sample_depth(empty, camera.color, camera, 8).empty());
+    const SurfaceMatch match = match_surface(Surface(), camera.color, {}, Pose::Identity(), 0.04, 1);
+    EXPECT_EQ(match.matched, 0);
+    EXPECT_EQ(match.term.information.norm(), 0);
+}
+
+TEST(Surface, StepsOfTheMatchLeadToTheTrueMotion) {
+    const CameraInfo camera = room_camera();
+    const RenderedFrame before = render_room(camera, Pose::Identity());
+    Twist twist;
+    twist << 0.02, -0.01, 0.03, 0.01, -0.015, 0.01;
+    const Pose room_from_camera = pose_from_twist(twist);
+    const RenderedFrame after = render_room(camera, room_from_camera);
+    const Surface surface(before.depth, camera.color, camera, 16);
+    const auto samples = sample_depth(after.depth, camera.color, camera, 8);
+    Pose camera_from_keyframe = Pose::Identity();
+    for (int i = 0; i < 10; ++i) {
+        const SurfaceMatch match =
+            match_surface(surface, camera.color, samples, camera_from_keyframe, 0.1, 1);
+        camera_from_keyframe =
+            pose_from_twist(-match.term.information.ldlt().solve(match.term.gradient)) * camera_from_keyframe;
+    }
+    EXPECT_LT(twist_from_pose(camera_from_keyframe * room_from_camera).norm(), 2e-3);
+}
+
+TEST(Surface, OneWallSaysNothingAlongItself) {
+    const CameraInfo camera = room_camera();
+    const RenderedFrame frame = render_room(camera, Pose::Identity(), true, {{{0, 0, -1}, 2}});
+    const Surface surface(frame.depth, camera.color, camera, 16);
+    const auto samples = sample_depth(frame.depth, camera.color, camera, 8);
+    const Matrix6d information =
+        match_surface(surface, camera.color, samples, Pose::Identity(), 0.04, 1).term.information;
+    EXPECT_LT(information(0, 0), 1e-3 * information(2, 2));
+    EXPECT_LT(information(1, 1), 1e-3 * information(2, 2));
+    EXPECT_LT(information(5, 5), 1e-3 * information(3, 3));
+}
+
+}  // namespace
+}  // namespace planemap

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "segmentation/segmentation.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "segmentation/scene.hpp"
+
+namespace planemap {
+namespace {
+
+SegmentationOptions options_for(const std::string& method) {
+    SegmentationOptions options;
+    options.method = method;
+    options.ransac.max_iterations = 200;
+    return options;
+}
+
+/// What every method promises of every result.
+void expect_consistent(const Segmentation& out, const DepthImage& depth, const CameraInfo& camera) {
+    ASSERT_EQ(out.labels.width, depth.width);
+    ASSERT_EQ(out.labels.height, depth.height);
+    ASSERT_EQ(out.labels.pixels.size(), depth.pixels.size());
+    for (std::size_t i = 0; i < out.regions.size(); ++i) {
+        const PlanarRegion& region = out.regions[i];
+        EXPECT_TRUE(is_valid(region)) << i;
+        EXPECT_GT(region.plane.d, 0) << i;
+        EXPECT_NEAR(region.plane.signed_distance(region.box.frame_from_box.translation()), 0, 1e-6) << i;
+        EXPECT_LT((region.box.frame_from_box.linear().col(2) - region.plane.normal).norm(), 1e-6) << i;
+        EXPECT_GE(out.regions[i > 0 ? i - 1 : 0].moments.count, region.moments.count) << i;
+    }
+    for (std::size_t i = 0; i < depth.pixels.size(); ++i) {
+        ASSERT_LE(out.labels.pixels[i], out.regions.size());
+        if (out.labels.pixels[i] == 0) continue;
+        ASSERT_TRUE(is_valid_depth(depth.pixels[i]));
+        ASSERT_GE(camera.metres(depth.pixels[i]), camera.depth_min_m);
+        ASSERT_LE(camera.metres(depth.pixels[i]), camera.depth_max_m);
+    }
+}
+
+void expect_same(const Segmentation& a, const Segmentation& b) {
+    ASSERT_EQ(a.regions.size(), b.regions.size());
+    EXPECT_EQ(a.labels.pixels, b.labels.pixels);
+    for (std::size_t i = 0; i < a.regions.size(); ++i) {
+        EXPECT_EQ(a.regions[i].plane.normal, b.regions[i].plane.normal);
+        EXPECT_EQ(a.regions[i].plane.d, b.regions[i].plane.d);
+        EXPECT_EQ(a.regions[i].moments.scatter, b.regions[i].moments.scatter);
+        ASSERT_EQ(a.regions[i].outline.rings.size(), b.regions[i].outline.rings.size());
+        for (std::size_t r = 0; r < a.regions[i].outline.rings.size(); ++r)
+            EXPECT_EQ(a.regions[i].outline.rings[r], b.regions[i].outline.rings[r]);
+    }
+}
+
+class EveryMethod : public testing::TestWithParam<std::string> {
+  protected:
+    std::unique_ptr<Segmenter> segmenter_ = make_segmenter(options_for(GetParam()));
+};
+
+INSTANTIATE_TEST_SUITE_P(Methods, EveryMethod, testing::Values("cells", "ransac"),
+                         [](const auto& info) { return info.param; });
+
+TEST_P(EveryMethod, FindsTheWallsOfACorner) {
+    const CameraInfo camera = scene::camera();
+    const Plane left = scene::tilted(0.1, 0.8, {0, 0, 2.5}), right = scene::tilted(0.1, -0.7, {0, 0, 2.5});
+    const DepthImage depth = scene::render(camera, {scene::plane(left), scene::plane(right)}, true);
+    Segmentation out;
+    segmenter_->segment(depth, camera, out);
+    expect_consistent(out, depth, camera);
+    EXPECT_NE(scene::find(out, left), nullptr);
+    EXPECT_NE(scene::find(out, right), nullptr);
+    EXPECT_GT(scene::labelled_share(out), 0.95);
+}
+
+TEST_P(EveryMethod, IsDeterministicAndKeepsNoState) {
+    const CameraInfo camera = scene::camera(320, 240);
+    const DepthImage corner = scene::render(
+        camera,
+        {scene::plane(scene::tilted(0, 0.8, {0, 0, 2})), scene::plane(scene::tilted(0, -0.7, {0, 0, 2}))},
+        true);
+    const DepthImage wall = scene::render(camera, {scene::plane(scene::tilted(0.3, 0, {0, 0, 1.5}))}, true);
+    Segmentation first, other, again, fresh;
+    segmenter_->segment(corner, camera, first);
+    segmenter_->segment(wall, camera, other);
+    segmenter_->segment(corner, camera, again);
+    make_segmenter(options_for(GetParam()))->segment(corner, camera, fresh);
+    expect_same(first, again);
+    expect_same(first, fresh);
+    EXPECT_FALSE(first.regions.empty());
+}
+
+TEST_P(EveryMethod, NothingValidIsNoRegion) {
+    const CameraInfo camera = scene::camera(320, 240);
+    for (const std::uint16_t raw :
+         std::vector<std::uint16_t>{0, 65535, 100, 20000}) {  // the last two are out of the trusted range
+        Segmentation out;
+        out.regions.resize(2);
+        segmenter_->segment(DepthImage(320, 240, raw), camera, out);
+        EXPECT_TRUE(out.regions.empty());
+        EXPECT_THAT(out.labels.pixels, testing::Each(0));
+    }
+}
+
+TEST_P(EveryMethod, RangeOutsideOf16BitsIsNoRegion) {
+    CameraInfo camera = scene::camera(64, 48);
+    camera.depth_min_m = 70;
+    camera.depth_max_m = 80;
+    Segmentation out;
+    segmenter_->segment(DepthImage(64, 48, 2000), camera, out);
+    EXPECT_TRUE(out.regions.empty());
+}
+
+TEST_P(EveryMethod, RefusesAnImageOfAnotherSizeAndABadCamera) {
+    CameraInfo camera = scene::camera(320, 240);
+    Segmentation out;
+    EXPECT_THROW(segmenter_->segment(DepthImage(), camera, out), std::invalid_argument);
+    EXPECT_THROW(segmenter_->segment(DepthImage(240, 320), camera, out), std::invalid_argument);
+    DepthImage short_of_pixels(320, 240);
+    short_of_pixels.pixels.pop_back();
+    EXPECT_THROW(segmenter_->segment(short_of_pixels, camera, out), std::invalid_argument);
+    for (const double focal : {0.0, -1.0, std::nan("")}) {
+        camera.depth.fx = focal;
+        EXPECT_THROW(segmenter_->segment(DepthImage(320, 240), camera, out), std::invalid_argument);
+    }
+}
+
+TEST_P(EveryMethod, SurvivesRandomImagesOfRandomSizes) {
+    std::mt19937_64 random(7);
+    Segmentation out;
+    for (int trial = 0; trial < 40; ++trial) {
+        const auto pick = [&](int low, int high) {
+            return std::uniform_int_distribution<int>(low, high)(random);
+        };
+        CameraInfo camera = scene::camera(pick(1, 300), pick(1, 200));
+        camera.depth_units_per_metre = trial % 2 == 0 ? 1000 : 5000;
+        DepthImage depth(camera.depth.width, camera.depth.height);
+        const int kind = trial % 4, base = pick(300, 9000);
+        for (std::uint16_t& raw : depth.pixels) {
+            // Anything; small noise about a value; blocks of few values; valid and invalid in turn.
+            const int value = kind == 0   ? pick(0, 65535)
+                              : kind == 1 ? base + pick(-20, 20)
+                              : kind == 2 ? 1000 * pick(0, 3)
+                                          : pick(0, 1) * base;
+            raw = static_cast<std::uint16_t>(value);
+        }
+        segmenter_->segment(depth, camera, out);
+        expect_consistent(out, depth, camera);
+    }
+}
+
+TEST_P(EveryMethod, WorksAtManySizes) {
+    for (const auto& [width, height] :
+         std::vector<std::pair<int, int>>{{320, 240}, {1280, 720}, {641, 479}, {7, 5}, {1, 1}}) {
+        const CameraInfo camera = scene::camera(width, height);
+        const Plane wall = scene::tilted(0.4, 0.2, {0, 0, 1.8});
+        const DepthImage depth = scene::render(camera, {scene::plane(wall)}, true);
+        Segmentation out;
+        segmenter_->segment(depth, camera, out);
+        expect_consistent(out, depth, camera);
+        if (width < 100) continue;
+        ASSERT_FALSE(out.regions.empty()) << width;
+        EXPECT_NE(scene::find(out, wall, 0.5, 0.01), nullptr) << width;
+    }
+}
+
+TEST(SegmentationOptionsTest, DefaultsAreValid) {
+    EXPECT_NO_THROW(SegmentationOptions().validate());
+}
+
+TEST(SegmentationOptionsTest, NamesEveryBadField) {
+    SegmentationOptions options;
+    options.method = "magic";
+    options.cells.grow_m = -1;
+    options.cells.bend_deg = std::nan("");
+    options.ransac.subsampling = 0;
+    try {
+        make_segmenter(options);
+        FAIL() << "no exception";
+    } catch (const std::invalid_argument& error) {
+        EXPECT_THAT(error.what(), testing::AllOf(testing::HasSubstr("method is magic"),
+                                                 testing::HasSubstr("cells.grow_m is -1"),
+                                                 testing::HasSubstr("cells.bend_deg"),
+                                                 testing::HasSubstr("ransac.subsampling is 0")));
+    }
+}
+
+}  // namespace
+}  // namespace planemap

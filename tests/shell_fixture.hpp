@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the tests of LCM shells share: a memq:// bus, sample frames, and bytes that are no message.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <vector>
+
+#include "messages/channels.hpp"
+#include "messages/convert.hpp"
+#include "messages/decode.hpp"
+#include "messages/frame_decoder.hpp"
+
+namespace planemap::test {
+
+class ShellTest : public testing::Test {
+  protected:
+    static constexpr int kWidth = 160, kHeight = 120;
+
+    static CameraInfo camera() {
+        CameraInfo camera;
+        camera.serial = "test";
+        camera.depth = camera.color = {kWidth, kHeight, 140, 140, 79.5, 59.5};
+        return camera;
+    }
+
+    /// A wall at 2 m with a dotted texture, moved sideways by `shift` metres.
+    static bot_core::images_t frame(std::int64_t utime, double shift = 0) {
+        RgbImage color(kWidth, kHeight);
+        for (int v = 0; v < kHeight; ++v) {
+            for (int u = 0; u < kWidth; ++u) {
+                const double x = (u - 79.5) / 140 * 2 + shift, y = (v - 59.5) / 140 * 2;
+                const auto cell =
+                    static_cast<std::uint64_t>(static_cast<std::int64_t>((x + 50) / 0.08)) * 7919u +
+                    static_cast<std::uint64_t>(static_cast<std::int64_t>((y + 50) / 0.08)) * 104729u;
+                const auto level = static_cast<std::uint8_t>((cell * 2654435761u >> 16) % 200 + 30);
+                color(u, v) = {level, level, level};
+            }
+        }
+        bot_core::images_t images;
+        images.utime = utime;
+        images.image_types = {bot_core::images_t::LEFT, bot_core::images_t::DEPTH_MM};
+        images.images = {color_image_message(color, utime, ColorEncoding::kRaw, 90),
+                         depth_image_message(DepthImage(kWidth, kHeight, 2000), utime, DepthEncoding::kRaw)};
+        images.n_images = 2;
+        return images;
+    }
+
+    void publish_camera() { bus_.publish(channels::kCameraInfo, to_message(camera(), 0, 0)); }
+
+    /// Bytes that no decoder may take, on a channel: empty, garbage, and a good message cut short and spoilt.
+    template <typename T>
+    void publish_corrupt(const char* channel, const T& good) {
+        std::vector<std::uint8_t> bytes(static_cast<std::size_t>(good.getEncodedSize()));
+        good.encode(bytes.data(), 0, good.getEncodedSize());
+        bus_.publish_bytes(channel, std::vector<std::uint8_t>(3, 0));
+        bus_.publish_bytes(channel, std::vector<std::uint8_t>(5000, 0xff));
+        bus_.publish_bytes(channel, std::span(bytes).first(bytes.size() / 2));
+        bytes.resize(bytes.size() + 1);
+        bus_.publish_bytes(channel, bytes);
+    }
+    static constexpr int kCorrupt = 4;
+
+    /// Collects all messages of a type on a channel.
+    template <typename T>
+    std::shared_ptr<std::vector<T>> collect(const char* channel) {
+        auto all = std::make_shared<std::vector<T>>();
+        bus_.subscribe(channel, [all](const RawMessage& m) { all->push_back(decode<T>(m.bytes)); });
+        return all;
+    }
+
+    Bus bus_{"memq://"};
+};
+
+}  // namespace planemap::test

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "evaluate/evaluation.hpp"
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <span>
+#include <tuple>
+
+#include "core/validation.hpp"
+
+namespace planemap {
+
+namespace {
+
+constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
+
+std::int64_t microseconds(double seconds) {
+    return std::llround(seconds * 1e6);
+}
+
+/// Index of the value nearest to t in sorted, non-empty values. Where two are as near, the one that halving
+/// meets first, as in evaluate_rpe.py: find_closest_index.
+std::size_t closest_index(const std::vector<double>& values, double t) {
+    std::size_t best = 0, begin = 0, end = values.size();
+    double difference = std::abs(values[0] - t);
+    while (begin < end) {
+        const std::size_t middle = (begin + end) / 2;
+        if (std::abs(values[middle] - t) < difference) {
+            difference = std::abs(values[middle] - t);
+            best = middle;
+        }
+        if (values[middle] == t) return middle;
+        if (values[middle] > t) {
+            end = middle;
+        } else {
+            begin = middle + 1;
+        }
+    }
+    return best;
+}
+
+/// Stamps in microseconds, which a double holds exactly.
+std::vector<double> stamps_of(const Trajectory& trajectory) {
+    std::vector<double> stamps;
+    for (const StampedPose& pose : trajectory) stamps.push_back(static_cast<double>(pose.utime));
+    return stamps;
+}
+
+/// Motion from pose a to pose b as evaluate_rpe.py's ominus(b, a) writes it: camera b from camera a.
+Pose relative_motion(const StampedPose& a, const StampedPose& b) {
+    return b.world_from_camera.inverse() * a.world_from_camera;
+}
+
+/// For each pose how far along the trajectory it is: microseconds, metres, radians, degrees or poses.
+std::vector<double> distances_along(const Trajectory& trajectory, DeltaUnit unit) {
+    if (unit == DeltaUnit::seconds) return stamps_of(trajectory);
+    std::vector<double> distances;
+    double distance = 0.0;
+    for (const StampedPose& pose : trajectory) {
+        const StampedPose& previous = distances.empty() ? pose : trajectory[distances.size() - 1];
+        const Pose motion = relative_motion(previous, pose);
+        if (unit == DeltaUnit::metres) distance += motion.translation().norm();
+        if (unit == DeltaUnit::radians) distance += rotation_angle(motion);
+        if (unit == DeltaUnit::degrees) distance += rotation_angle(motion) * degrees_per_radian;
+        if (unit == DeltaUnit::frames) distance = static_cast<double>(distances.size());
+        distances.push_back(distance);
+    }
+    return distances;
+}
+
+/// Pairs of poses of the estimate that are delta apart.
+std::vector<std::pair<std::size_t, std::size_t>> delta_pairs(const Trajectory& estimate, const Delta& delta) {
+    const std::vector<double> along = distances_along(estimate, delta.unit);
+    const double step = delta.unit == DeltaUnit::seconds ? std::round(delta.value * 1e6) : delta.value;
+    std::vector<std::pair<std::size_t, std::size_t>> pairs;
+    for (std::size_t i = 0; i < along.size(); ++i) {
+        const std::size_t j = closest_index(along, along[i] + step);
+        if (j != along.size() - 1) pairs.emplace_back(i, j);
+    }
+    return pairs;
+}
+
+double median_of_sorted(std::span<const double> values) {
+    const std::size_t half = values.size() / 2;
+    return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+}
+
+double median_interval(const std::vector<double>& stamps) {
+    std::vector<double> intervals;
+    for (std::size_t i = 1; i < stamps.size(); ++i) intervals.push_back(stamps[i] - stamps[i - 1]);
+    std::sort(intervals.begin(), intervals.end());
+    return median_of_sorted(intervals);
+}
+
+Eigen::Matrix3Xd matched_positions(const Trajectory& trajectory, const std::vector<PosePair>& pairs,
+                                   bool truth) {
+    Eigen::Matrix3Xd positions(3, static_cast<Eigen::Index>(pairs.size()));
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        const std::size_t pose = truth ? pairs[i].first : pairs[i].second;
+        positions.col(static_cast<Eigen::Index>(i)) = trajectory[pose].world_from_camera.translation();
+    }
+    return positions;
+}
+
+}  // namespace
+
+void EvaluationOptions::validate() const {
+    FieldErrors errors("EvaluationOptions");
+    errors.require(max_difference_s > 0 && max_difference_s <= 1e9, "max_difference_s", max_difference_s,
+                   "greater than 0 and at most 1e9");
+    errors.require(std::abs(offset_s) <= 1e9, "offset_s", offset_s, "from -1e9 to 1e9");
+    errors.require(std::isfinite(scale) && scale > 0, "scale", scale, "greater than 0");
+    errors.throw_if_any();
+}
+
+Statistics statistics(std::vector<double> values) {
+    if (values.empty()) return {};
+    std::sort(values.begin(), values.end());
+    const auto n = static_cast<double>(values.size());
+    Statistics result;
+    result.count = values.size();
+    result.rmse = std::sqrt(std::inner_product(values.begin(), values.end(), values.begin(), 0.0) / n);
+    result.mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
+    result.median = median_of_sorted(values);
+    double squares = 0.0;
+    for (const double value : values) squares += (value - result.mean) * (value - result.mean);
+    result.std = std::sqrt(squares / n);
+    result.min = values.front();
+    result.max = values.back();
+    return result;
+}
+
+std::vector<PosePair> associate(const Trajectory& truth, const Trajectory& estimate,
+                                const EvaluationOptions& options) {
+    const std::int64_t offset = microseconds(options.offset_s);
+    const std::int64_t limit = microseconds(options.max_difference_s);
+    std::vector<std::tuple<std::int64_t, std::size_t, std::size_t>> candidates;
+    std::size_t window = 0;
+    for (std::size_t e = 0; e < estimate.size(); ++e) {
+        const std::int64_t stamp = estimate[e].utime + offset;
+        while (window < truth.size() && truth[window].utime <= stamp - limit) ++window;
+        for (std::size_t t = window; t < truth.size() && truth[t].utime < stamp + limit; ++t) {
+            candidates.emplace_back(std::abs(truth[t].utime - stamp), t, e);
+        }
+    }
+    std::sort(candidates.begin(), candidates.end());
+
+    std::vector<PosePair> pairs;
+    std::vector<bool> truth_used(truth.size(), false), estimate_used(estimate.size(), false);
+    for (const auto& [difference, t, e] : candidates) {
+        if (truth_used[t] || estimate_used[e]) continue;
+        truth_used[t] = estimate_used[e] = true;
+        pairs.emplace_back(t, e);
+    }
+    std::sort(pairs.begin(), pairs.end());
+    return pairs;
+}
+
+std::optional<AbsoluteError> absolute_error(const Trajectory& truth, const Trajectory& estimate,
+                                            const std::vector<PosePair>& pairs, double scale) {
+    if (pairs.size() < 3) return std::nullopt;
+    const Eigen::Matrix3Xd data = matched_positions(truth, pairs, true);
+    const Eigen::Matrix3Xd model = scale * matched_positions(estimate, pairs, false);
+    const Eigen::Vector3d data_mean = data.rowwise().mean();
+    const Eigen::Vector3d model_mean = model.rowwise().mean();
+    const Eigen::Matrix3Xd data_centred = data.colwise() - data_mean;
+    const Eigen::Matrix3Xd model_centred = model.colwise() - model_mean;
+
+    const Eigen::Matrix3d correlation = data_centred * model_centred.transpose();
+    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(correlation, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    Eigen::Vector3d signs = Eigen::Vector3d::Ones();
+    if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0) signs.z() = -1;
+
+    AbsoluteError result;
+    result.truth_from_estimate.linear() = svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
+    result.truth_from_estimate.translation() = data_mean - result.truth_from_estimate.linear() * model_mean;
+
+    const Eigen::Matrix3Xd aligned = result.truth_from_estimate.linear() * model_centred;
+    const Eigen::VectorXd errors = (aligned - data_centred).colwise().norm().transpose();
+    result.metres = statistics({errors.begin(), errors.end()});
+    result.scale = data_centred.cwiseProduct(aligned).sum() / aligned.squaredNorm();
+    return result;
+}
+
+std::optional<RelativeError> relative_error(const Trajectory& truth, const Trajectory& estimate,
+                                            const Delta& delta, const EvaluationOptions& options) {
+    if (truth.size() < 2 || estimate.size() < 2) return std::nullopt;
+    const std::vector<double> truth_stamps_us = stamps_of(truth);
+    const double max_difference_us = 2.0 * median_interval(truth_stamps_us);
+    const auto truth_at = [&](const StampedPose& pose) -> const StampedPose* {
+        const auto stamp_us = static_cast<double>(pose.utime + microseconds(options.offset_s));
+        const std::size_t nearest = closest_index(truth_stamps_us, stamp_us);
+        return std::abs(truth_stamps_us[nearest] - stamp_us) > max_difference_us ? nullptr : &truth[nearest];
+    };
+    std::vector<double> metres, degrees;
+    for (const auto& [i, j] : delta_pairs(estimate, delta)) {
+        const StampedPose* first = truth_at(estimate[i]);
+        const StampedPose* second = truth_at(estimate[j]);
+        if (first == nullptr || second == nullptr) continue;
+        Pose motion = relative_motion(estimate[i], estimate[j]);
+        motion.translation() *= options.scale;
+        const Pose error = motion.inverse() * relative_motion(*first, *second);
+        metres.push_back(error.translation().norm());
+        degrees.push_back(rotation_angle(error) * degrees_per_radian);
+    }
+    if (metres.size() < 2) return std::nullopt;
+    return RelativeError{statistics(std::move(metres)), statistics(std::move(degrees))};
+}
+
+double matched_path_length(const Trajectory& truth, const std::vector<PosePair>& pairs) {
+    double length = 0.0;
+    if (pairs.empty()) return length;
+    for (std::size_t i = pairs.front().first; i < pairs.back().first; ++i) {
+        length +=
+            (truth[i + 1].world_from_camera.translation() - truth[i].world_from_camera.translation()).norm();
+    }
+    return length;
+}
+
+Trajectory without_repeated_stamps(const Trajectory& trajectory) {
+    Trajectory unique;
+    unique.reserve(trajectory.size());
+    for (const StampedPose& pose : trajectory) {
+        if (!unique.empty() && unique.back().utime == pose.utime) unique.pop_back();
+        unique.push_back(pose);
+    }
+    return unique;
+}
+
+Evaluation evaluate(const Trajectory& truth_poses, const Trajectory& estimate_poses,
+                    const EvaluationOptions& options) {
+    options.validate();
+    const Trajectory truth = without_repeated_stamps(truth_poses);
+    const Trajectory estimate = without_repeated_stamps(estimate_poses);
+    const std::vector<PosePair> pairs = associate(truth, estimate, options);
+
+    Evaluation result;
+    result.truth_poses = truth.size();
+    result.estimate_poses = estimate.size();
+    result.pairs = pairs.size();
+    if (!estimate.empty()) {
+        result.matched_share = static_cast<double>(pairs.size()) / static_cast<double>(estimate.size());
+    }
+    result.path_length_m = matched_path_length(truth, pairs);
+    result.ate = absolute_error(truth, estimate, pairs, options.scale);
+    result.rpe_frame = relative_error(truth, estimate, {1.0, DeltaUnit::frames}, options);
+    result.rpe_1s = relative_error(truth, estimate, {1.0, DeltaUnit::seconds}, options);
+    return result;
+}
+
+}  // namespace planemap

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// planemap-evaluate: ATE and RPE of a trajectory against the truth.
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
+
+#include "core/files.hpp"
+#include "evaluate/evaluation.hpp"
+#include "messages/process.hpp"
+
+namespace planemap {
+namespace {
+
+struct Arguments {
+    std::string truth_file, estimate_file, json_file;
+    EvaluationOptions options;
+    std::optional<double> delta;
+    std::string delta_unit = "s";
+};
+
+const std::map<std::string, DeltaUnit> delta_units{{"s", DeltaUnit::seconds},
+                                                   {"m", DeltaUnit::metres},
+                                                   {"rad", DeltaUnit::radians},
+                                                   {"deg", DeltaUnit::degrees},
+                                                   {"f", DeltaUnit::frames}};
+
+void add_flags(Flags& flags, Arguments& arguments) {
+    flags.add_positional("TRUTH", arguments.truth_file,
+                         "true trajectory: lines `timestamp tx ty tz qx qy qz qw`");
+    flags.add_positional("ESTIMATE", arguments.estimate_file, "estimated trajectory, same format");
+    flags.add("json", arguments.json_file,
+              "write the figures as JSON to this file, or to - (standard output)");
+    flags.add("max-difference", arguments.options.max_difference_s,
+              "seconds by which matched stamps differ at most");
+    flags.add("offset", arguments.options.offset_s, "seconds added to the estimate's stamps");
+    flags.add("scale", arguments.options.scale,
+              "factor on the estimate's translations; give the printed scale to align over Sim(3)");
+    flags.add("delta", arguments.delta, "one more RPE, over this delta (see --delta-unit)");
+    flags.add_choice("delta-unit", arguments.delta_unit, {"s", "f", "m", "rad", "deg"},
+                     "of --delta: s seconds, f frames, or m, rad, deg along the estimate");
+}
+
+std::string span_of(const Trajectory& trajectory) {
+    if (trajectory.empty()) return "nothing";
+    char text[80];
+    std::snprintf(text, sizeof(text), "%.3f to %.3f s", static_cast<double>(trajectory.front().utime) * 1e-6,
+                  static_cast<double>(trajectory.back().utime) * 1e-6);
+    return text;
+}
+
+/// Why there is no ATE, in one line.
+std::string too_few_pairs(const Arguments& arguments, const Trajectory& truth, const Trajectory& estimate,
+                          std::size_t pairs) {
+    if (pairs == 0) {
+        return "no overlap in time: " + arguments.truth_file + " covers " + span_of(truth) + ", " +
+               arguments.estimate_file + " covers " + span_of(estimate) +
+               " (see --offset and --max-difference)";
+    }
+    return "only " + std::to_string(pairs) + " poses of " + arguments.estimate_file + " match poses of " +
+           arguments.truth_file + " in time, at least 3 are needed (see --offset and --max-difference)";
+}
+
+nlohmann::ordered_json to_json(const Statistics& s) {
+    return {{"rmse", s.rmse}, {"mean", s.mean}, {"median", s.median},
+            {"std", s.std},   {"min", s.min},   {"max", s.max}};
+}
+
+nlohmann::ordered_json to_json(const std::optional<RelativeError>& error) {
+    if (!error) return nullptr;
+    return {{"pairs", error->metres.count},
+            {"trans", to_json(error->metres)},
+            {"rot_deg", to_json(error->degrees)}};
+}
+
+nlohmann::ordered_json to_json(const Evaluation& evaluation) {
+    return {{"truth_poses", evaluation.truth_poses},
+            {"estimate_poses", evaluation.estimate_poses},
+            {"pairs", evaluation.pairs},
+            {"matched_share", evaluation.matched_share},
+            {"path_length_m", evaluation.path_length_m},
+            {"scale", evaluation.ate->scale},
+            {"ate", to_json(evaluation.ate->metres)},
+            {"rpe_frame", to_json(evaluation.rpe_frame)},
+            {"rpe_1s", to_json(evaluation.rpe_1s)}};
+}
+
+void print_row(const std::string& name, const char* unit, const Statistics& s) {
+    std::printf("%-16s %-4s %9.4f %9.4f %9.4f %9.4f %9.4f %9.4f\n", name.c_str(), unit, s.rmse, s.mean,
+                s.median, s.std, s.min, s.max);
+}
+
+void print_rows(const std::string& name, const std::optional<RelativeError>& error) {
+    if (!error) {
+        std::printf("%-16s too few pairs that far apart\n", name.c_str());
+        return;
+    }
+    print_row(name, "m", error->metres);
+    print_row("", "deg", error->degrees);
+}
+
+void print_table(const Evaluation& evaluation) {
+    std::printf("matched %zu of %zu poses (truth: %zu), true path %.2f m, scale %.4f\n", evaluation.pairs,
+                evaluation.estimate_poses, evaluation.truth_poses, evaluation.path_length_m,
+                evaluation.ate->scale);
+    std::printf("%-16s %-4s %9s %9s %9s %9s %9s %9s\n", "", "", "rmse", "mean", "median", "std", "min",
+                "max");
+    print_row("ATE", "m", evaluation.ate->metres);
+    print_rows("RPE per frame", evaluation.rpe_frame);
+    print_rows("RPE per 1 s", evaluation.rpe_1s);
+}
+
+void run(const Arguments& arguments) {
+    arguments.options.validate();
+    if (arguments.delta && !(*arguments.delta > 0))
+        throw std::invalid_argument("--delta must be greater than 0");
+    const Trajectory truth = read_trajectory(arguments.truth_file);
+    const Trajectory estimate = read_trajectory(arguments.estimate_file);
+    const Evaluation evaluation = evaluate(truth, estimate, arguments.options);
+    if (!evaluation.ate)
+        throw std::runtime_error(too_few_pairs(arguments, truth, estimate, evaluation.pairs));
+
+    nlohmann::ordered_json json = to_json(evaluation);
+    if (arguments.json_file != "-") print_table(evaluation);
+    if (arguments.delta) {
+        const Delta delta{*arguments.delta, delta_units.at(arguments.delta_unit)};
+        const auto error = relative_error(without_repeated_stamps(truth), without_repeated_stamps(estimate),
+                                          delta, arguments.options);
+        char name[40];
+        std::snprintf(name, sizeof(name), "RPE per %g %s", delta.value, arguments.delta_unit.c_str());
+        if (arguments.json_file != "-") print_rows(name, error);
+        json["rpe_delta"] = to_json(error);
+        json["delta"] = delta.value;
+        json["delta_unit"] = arguments.delta_unit;
+    }
+    if (arguments.json_file == "-") {
+        std::cout << json.dump(2) << std::endl;
+    } else if (!arguments.json_file.empty()) {
+        write_file(arguments.json_file, json.dump(2) + "\n");
+    }
+}
+
+}  // namespace
+}  // namespace planemap
+
+int main(int argc, char** argv) {
+    const std::string program = "planemap-evaluate";
+    planemap::Arguments arguments;
+    planemap::Flags flags(program,
+                          "Compares a trajectory with the truth as the TUM RGB-D benchmark does: absolute "
+                          "trajectory error (ATE) after\n"
+                          "rigid alignment, and relative pose error (RPE) per frame and per second.");
+    planemap::add_flags(flags, arguments);
+    const int parsed = flags.parse(argc, argv);
+    if (parsed >= 0) return parsed;
+    return planemap::run_main(program, [&] {
+        planemap::run(arguments);
+        return 0;
+    });
+}
