@@ -29,6 +29,14 @@ std::string completed(std::string url) {
     return url;
 }
 
+/// liblcm's own word on an unknown provider is a second line on stderr; ours says what there is.
+void check_provider(const std::string& url) {
+    for (const char* provider : {"udpm://", "mpudpm://", "tcpq://", "memq://", "file://"}) {
+        if (url.rfind(provider, 0) == 0) return;
+    }
+    throw std::runtime_error("LCM URL '" + url + "': the provider must be udpm, tcpq, memq or file");
+}
+
 }  // namespace
 
 struct Bus::Subscriber {
@@ -51,7 +59,9 @@ std::string receive_buffer_advice(const std::string& url) {
            " bytes, frames may be lost: run `sysctl -w net.core.rmem_max=" + std::to_string(wanted) + "`";
 }
 
-Bus::Bus(const std::string& url) : url_(completed(url)), lcm_(std::make_unique<lcm::LCM>(url_)) {
+Bus::Bus(const std::string& url) : url_(completed(url)) {
+    check_provider(url_);
+    lcm_ = std::make_unique<lcm::LCM>(url_);
     if (!lcm_->good()) throw std::runtime_error("LCM URL '" + url_ + "' cannot be opened");
     const std::string advice = receive_buffer_advice(url_);
     if (!advice.empty()) spdlog::warn("{}", advice);

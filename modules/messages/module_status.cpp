@@ -45,17 +45,18 @@ ModuleStatus::Work::~Work() {
     status_.window_ms_.add(ms);
 }
 
-module_status_t ModuleStatus::message(std::int64_t now_us, bool stopped) {
+module_status_t ModuleStatus::message(std::int64_t now_us, bool stopped) const {
     const double seconds = static_cast<double>(now_us - window_start_us_) * 1e-6;
     const std::int64_t inputs = received_ - window_received_;
     module_status_t m;
     m.utime = now_us;
-    m.seq = seq_++;
+    m.seq = seq_;
     m.module = module_;
     m.text = text_;
     m.rate_hz = seconds > 0 ? static_cast<double>(inputs) / seconds : 0;
-    m.latency_median_ms = static_cast<float>(window_ms_.median());
-    m.latency_p95_ms = static_cast<float>(window_ms_.p95());
+    const Histogram& ms = window_ms_.count() > 0 ? window_ms_ : work_ms_;  // a slow module has quiet seconds
+    m.latency_median_ms = static_cast<float>(ms.median());
+    m.latency_p95_ms = static_cast<float>(ms.p95());
     m.received = received_;
     m.published = published_;
     m.dropped = dropped_;
@@ -75,6 +76,7 @@ bool ModuleStatus::publish_if_due(Bus& bus, std::int64_t now_us, bool stopped) {
     if (!stopped && now_us - window_start_us_ < kPeriodUs) return false;
     last_ = message(now_us, stopped);
     bus.publish(channel_, last_);
+    ++seq_;
     window_start_us_ = now_us;
     window_received_ = received_;
     window_published_ = published_;

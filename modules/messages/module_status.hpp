@@ -57,7 +57,7 @@ class ModuleStatus {
     std::string line() const;
 
   private:
-    module_status_t message(std::int64_t now_us, bool stopped);
+    module_status_t message(std::int64_t now_us, bool stopped) const;
 
     std::string module_, channel_, text_;
     std::int64_t received_ = 0, published_ = 0, dropped_ = 0, decode_errors_ = 0, gaps_ = 0;

@@ -116,7 +116,7 @@ Eigen::Vector3d regularised(const Plane& plane, const Eigen::Vector3d& point) {
     return point * (-plane.d / along);
 }
 
-int hamming_distance(const Descriptor& a, const Descriptor& b) {
+int bit_difference(const Descriptor& a, const Descriptor& b) {
     std::array<std::uint64_t, 4> x, y;
     std::memcpy(x.data(), a.data(), sizeof x);
     std::memcpy(y.data(), b.data(), sizeof y);
@@ -132,7 +132,7 @@ std::vector<std::pair<int, int>> match_descriptors(std::span<const Feature> a, s
     for (std::size_t i = 0; i < a.size(); ++i) {
         int best = kFar, second = kFar;
         for (std::size_t j = 0; j < b.size(); ++j) {
-            const int bits = hamming_distance(a[i].descriptor, b[j].descriptor);
+            const int bits = bit_difference(a[i].descriptor, b[j].descriptor);
             if (bits < distance_of_b[j]) {
                 distance_of_b[j] = bits;
                 best_of_b[j] = static_cast<int>(i);

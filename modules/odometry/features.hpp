@@ -45,7 +45,7 @@ int region_of(std::span<const PlanarRegion> regions, const Eigen::Vector3d& poin
 Eigen::Vector3d regularised(const Plane& plane, const Eigen::Vector3d& point);
 
 /// Bits in which two descriptors differ.
-int hamming_distance(const Descriptor& a, const Descriptor& b);
+int bit_difference(const Descriptor& a, const Descriptor& b);
 
 /// Mutual nearest neighbours within max_distance bits, whose second-best is clearly worse: (index in a, in
 /// b).

@@ -9,6 +9,7 @@
 
 #include "odometry/features.hpp"
 #include "odometry/known_keyframes.hpp"
+#include "odometry/plane_search.hpp"
 #include "odometry/ransac.hpp"
 #include "odometry/tracker.hpp"
 
@@ -61,20 +62,22 @@ class Odometry::State {
     OdometryResult process(const OdometryFrame& frame);
 
   private:
-    View make_view(const OdometryFrame& frame) const;
+    PreparedFrame prepare(const OdometryFrame& frame) const;
     Guess predict(std::int64_t utime, const LocalKeyframe& keyframe, bool moving) const;
-    std::optional<Located> locate(const View& view);
-    std::optional<Track> second_chances(const View& view, const Guess& better) const;
-    std::optional<Located> relocalise(const View& view);
+    std::optional<Located> locate(const PreparedFrame& view);
+    std::optional<Track> second_chances(const PreparedFrame& view, const Guess& better) const;
+    std::optional<Track> track_geometry(const PreparedFrame& view, const Guess& guess) const;
+    std::optional<Located> relocalise(const PreparedFrame& view);
 
-    void follow(const View& view, const Located& located);
-    void remember_flow(View& view, const Track& track);
-    bool wants_keyframe(const View& view, const Located& located) const;
-    std::optional<std::size_t> other_keyframe(const View& view, const Located& located, Track& track) const;
-    std::optional<Keyframe> change_keyframe(View& view, const Located& located);
-    std::optional<Keyframe> begin(View& view, const Pose& odom_from_camera);
-    Keyframe add_keyframe(View& view, LocalKeyframe local, const Pose& odom_from_camera);
-    LocalKeyframe make_local(const View& view) const;
+    void follow(const PreparedFrame& view, const Located& located);
+    void remember_flow(PreparedFrame& view, const Track& track);
+    bool wants_keyframe(const PreparedFrame& view, const Located& located) const;
+    std::optional<std::size_t> other_keyframe(const PreparedFrame& view, const Located& located,
+                                              Track& track) const;
+    std::optional<Keyframe> change_keyframe(PreparedFrame& view, const Located& located);
+    std::optional<Keyframe> begin(PreparedFrame& view, const Pose& odom_from_camera);
+    Keyframe add_keyframe(PreparedFrame& view, LocalKeyframe local, const Pose& odom_from_camera);
+    LocalKeyframe make_local(const PreparedFrame& view) const;
 
     LocalKeyframe& current() { return local_[current_]; }
     const LocalKeyframe& current() const { return local_[current_]; }
@@ -98,8 +101,8 @@ class Odometry::State {
     double last_color_offset_s_ = 0;
 };
 
-View Odometry::State::make_view(const OdometryFrame& frame) const {
-    View view;
+PreparedFrame Odometry::State::prepare(const OdometryFrame& frame) const {
+    PreparedFrame view;
     view.utime = frame.utime;
     view.gray = frame.gray;
     view.depth = frame.depth;
@@ -137,7 +140,7 @@ OdometryResult Odometry::State::process(const OdometryFrame& frame) {
     check(frame);
     const bool other_camera = !local_.empty() && !(*frame.camera == camera_);
     if (local_.empty() || other_camera) frame.camera->validate();
-    View view = make_view(frame);
+    PreparedFrame view = prepare(frame);
     OdometryResult result;
     OdometryEstimate& estimate = result.estimate;
     estimate.utime = estimate.pose_utime = frame.utime;
@@ -185,7 +188,7 @@ OdometryResult Odometry::State::process(const OdometryFrame& frame) {
     return result;
 }
 
-std::optional<Located> Odometry::State::locate(const View& view) {
+std::optional<Located> Odometry::State::locate(const PreparedFrame& view) {
     const bool moving = lost_frames_ == 0;
     Guess guess = predict(view.utime, current(), moving);
     std::optional<Track> track;
@@ -202,14 +205,13 @@ std::optional<Located> Odometry::State::locate(const View& view) {
         if (!track)
             if (std::optional<Located> known = relocalise(view)) return known;
     }
-    if (!track && seconds(view.utime - pose_utime_) < kStillPredicted)
-        track = track_surface(options_, current(), view, guess);
+    if (!track) track = track_geometry(view, guess);
     if (!track) return std::nullopt;
     return Located{std::move(*track), current().id, current().odom_from_keyframe, false};
 }
 
 /// Flow again from a guess by the whole image: from the keyframe, then from the last frame with a pose.
-std::optional<Track> Odometry::State::second_chances(const View& view, const Guess& better) const {
+std::optional<Track> Odometry::State::second_chances(const PreparedFrame& view, const Guess& better) const {
     std::vector<cv::Point2f> pixels;
     for (const TrackPoint& point : current().points) pixels.push_back(point.pixel);
     FlowSearch search{&current().pyramid, &pixels, nullptr, options_.flow_wide_levels};
@@ -219,8 +221,23 @@ std::optional<Track> Odometry::State::second_chances(const View& view, const Gue
     return track_points(options_, current(), view, better, search);
 }
 
+/// Depth alone: from the guess while it is fresh, else from the planes that both views see.
+std::optional<Track> Odometry::State::track_geometry(const PreparedFrame& view, const Guess& guess) const {
+    std::optional<Track> track;
+    if (seconds(view.utime - pose_utime_) < kStillPredicted)
+        track = track_surface(options_, current(), view, guess);
+    if (track && !track->degenerate) return track;
+    Guess by_planes = guess;
+    const std::optional<Pose> pose =
+        search_planes(current().regions, view.regions, guess.camera_from_keyframe);
+    if (!pose) return track;
+    by_planes.camera_from_keyframe = *pose;
+    std::optional<Track> other = track_surface(options_, current(), view, by_planes);
+    return other && !other->degenerate ? other : track;
+}
+
 /// The frame's descriptors against remembered keyframes; refined by flow where the keyframe is still at hand.
-std::optional<Located> Odometry::State::relocalise(const View& view) {
+std::optional<Located> Odometry::State::relocalise(const PreparedFrame& view) {
     const std::vector<Feature> features =
         describe(*view.gray, *view.depth, *view.camera, options_.max_descriptors, options_.max_depth_spread);
     for (const KnownKeyframe* known : known_.candidates(*view.gray, options_.relocalisation_tries)) {
@@ -233,7 +250,7 @@ std::optional<Located> Odometry::State::relocalise(const View& view) {
             terms.push_back({seen.point.cast<double>(), here.pixel.cast<double>(),
                              2 * options_.pixel_sigma_px, 1 / z, 3 * options_.depth_sigma_scale * sigma});
         }
-        RansacOptions ransac;
+        MotionRansacOptions ransac;
         ransac.inlier_px = 4 * options_.pixel_sigma_px;
         ransac.min_inliers = kRelocalisedInliers;
         ransac.seed = options_.seed;
@@ -268,7 +285,7 @@ std::optional<Located> Odometry::State::relocalise(const View& view) {
 }
 
 /// Takes over the pose and the motion since the last one.
-void Odometry::State::follow(const View& view, const Located& located) {
+void Odometry::State::follow(const PreparedFrame& view, const Located& located) {
     const Pose odom_from_camera = located.odom_from_camera();
     const double elapsed = seconds(view.utime - pose_utime_);
     if (lost_frames_ > 0 || located.relocalised)
@@ -283,13 +300,13 @@ void Odometry::State::follow(const View& view, const Located& located) {
         located.track.by_features ? located.track.alignment.color_offset_s : view.color_offset_s;
 }
 
-void Odometry::State::remember_flow(View& view, const Track& track) {
+void Odometry::State::remember_flow(PreparedFrame& view, const Track& track) {
     last_pyramid_ = track.by_features ? std::move(view.pyramid) : FlowPyramid{};
     last_pixels_ = track.pixels;
     last_inlier_ = track.inlier;
 }
 
-bool Odometry::State::wants_keyframe(const View& view, const Located& located) const {
+bool Odometry::State::wants_keyframe(const PreparedFrame& view, const Located& located) const {
     if (located.relocalised) return true;
     const Pose keyframe_from_camera = located.keyframe_from_camera();
     if (keyframe_from_camera.translation().norm() > options_.max_translation_m ||
@@ -302,7 +319,7 @@ bool Odometry::State::wants_keyframe(const View& view, const Located& located) c
 }
 
 /// Another recent keyframe that sees more of this frame, with the frame tracked against it.
-std::optional<std::size_t> Odometry::State::other_keyframe(const View& view, const Located& located,
+std::optional<std::size_t> Odometry::State::other_keyframe(const PreparedFrame& view, const Located& located,
                                                            Track& track) const {
     if (view.pyramid.empty()) return std::nullopt;
     std::optional<std::size_t> best;
@@ -340,7 +357,7 @@ std::optional<std::size_t> Odometry::State::other_keyframe(const View& view, con
     return best;
 }
 
-std::optional<Keyframe> Odometry::State::change_keyframe(View& view, const Located& located) {
+std::optional<Keyframe> Odometry::State::change_keyframe(PreparedFrame& view, const Located& located) {
     Track track;
     if (const std::optional<std::size_t> other = other_keyframe(view, located, track)) {
         current_ = *other;
@@ -369,7 +386,7 @@ std::optional<Keyframe> Odometry::State::change_keyframe(View& view, const Locat
 }
 
 /// A keyframe without an edge. Nothing when the frame has neither texture nor surface.
-std::optional<Keyframe> Odometry::State::begin(View& view, const Pose& odom_from_camera) {
+std::optional<Keyframe> Odometry::State::begin(PreparedFrame& view, const Pose& odom_from_camera) {
     velocity_.setZero();
     lost_frames_ = 0;
     pose_utime_ = view.utime;
@@ -384,7 +401,7 @@ std::optional<Keyframe> Odometry::State::begin(View& view, const Pose& odom_from
     return add_keyframe(view, std::move(local), odom_from_camera);
 }
 
-LocalKeyframe Odometry::State::make_local(const View& view) const {
+LocalKeyframe Odometry::State::make_local(const PreparedFrame& view) const {
     LocalKeyframe local;
     local.utime = view.utime;
     local.regions = view.regions;
@@ -418,7 +435,8 @@ LocalKeyframe Odometry::State::make_local(const View& view) const {
     return local;
 }
 
-Keyframe Odometry::State::add_keyframe(View& view, LocalKeyframe local, const Pose& odom_from_camera) {
+Keyframe Odometry::State::add_keyframe(PreparedFrame& view, LocalKeyframe local,
+                                       const Pose& odom_from_camera) {
     Keyframe keyframe;
     keyframe.utime = keyframe.pose_utime = view.utime;
     keyframe.id = local.id = next_id_++;

@@ -57,7 +57,7 @@ int count_inliers(const PinholeCamera& camera, std::span<const PointTerm> points
 }  // namespace
 
 std::optional<Pose> ransac_motion(const PinholeCamera& camera, std::span<const PointTerm> points,
-                                  const RansacOptions& options) {
+                                  const MotionRansacOptions& options) {
     std::vector<Pair> pairs;
     for (const PointTerm& term : points)
         if (term.inverse_depth > 0)

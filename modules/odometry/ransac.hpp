@@ -9,7 +9,7 @@
 
 namespace planemap {
 
-struct RansacOptions {
+struct MotionRansacOptions {
     int max_iterations = 200;
     double confidence = 0.999;  ///< stop when a better sample is less likely than 1 - confidence
     double inlier_px = 3;       ///< reprojection error of an inlier
@@ -21,6 +21,6 @@ struct RansacOptions {
 /// vote by reprojection error and, where depth is known, by inverse depth (within 4 sigma). Returns
 /// camera_from_keyframe, or nothing when too few agree. Deterministic for a seed.
 std::optional<Pose> ransac_motion(const PinholeCamera& camera, std::span<const PointTerm> points,
-                                  const RansacOptions& options);
+                                  const MotionRansacOptions& options);
 
 }  // namespace planemap

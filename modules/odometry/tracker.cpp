@@ -20,7 +20,7 @@ constexpr double kWeakDirection = 4;  // information of the data over the guess'
 
 /// The points that flow found, as terms; depth is read where the point was at the depth image's time.
 std::vector<PointTerm> make_terms(const OdometryOptions& options, const LocalKeyframe& keyframe,
-                                  const View& view, const Guess& guess,
+                                  const PreparedFrame& view, const Guess& guess,
                                   const std::vector<cv::Point2f>& pixels,
                                   const std::vector<std::size_t>& found) {
     const PinholeCamera& camera = view.camera->color;
@@ -64,7 +64,7 @@ bool is_degenerate(const Matrix6d& information, const Guess& guess) {
     return !(eigen.eigenvalues()(0) > kWeakDirection);
 }
 
-Alignment make_alignment(const OdometryOptions& options, const View& view, const Guess& guess) {
+Alignment make_alignment(const OdometryOptions& options, const PreparedFrame& view, const Guess& guess) {
     Alignment alignment;
     alignment.camera = view.camera->color;
     alignment.velocity = guess.velocity;
@@ -82,7 +82,7 @@ AlignmentResult align_robustly(const OdometryOptions& options, const Alignment& 
     AlignmentResult result = align(alignment, guess.camera_from_keyframe);
     const auto terms = static_cast<double>(alignment.points.size());
     if (result.converged && result.inliers >= 0.5 * terms) return result;
-    RansacOptions ransac;
+    MotionRansacOptions ransac;
     ransac.inlier_px = options.inlier_sigmas * options.pixel_sigma_px;
     ransac.min_inliers = options.min_inliers;
     ransac.seed = options.seed;
@@ -96,7 +96,7 @@ AlignmentResult align_robustly(const OdometryOptions& options, const Alignment& 
 }
 
 std::vector<QuadraticTerm> geometry_terms(const OdometryOptions& options, const LocalKeyframe& keyframe,
-                                          const View& view, const Pose& camera_from_keyframe) {
+                                          const PreparedFrame& view, const Pose& camera_from_keyframe) {
     std::vector<QuadraticTerm> terms;
     if (options.surface_weight > 0)
         terms.push_back(match_surface(keyframe.surface, view.camera->color, view.samples,
@@ -151,8 +151,8 @@ QuadraticTerm match_planes(std::span<const PlanarRegion> keyframe_regions,
 }
 
 std::optional<Track> align_points(const OdometryOptions& options, const LocalKeyframe& keyframe,
-                                  const View& view, const Guess& guess, std::vector<cv::Point2f> pixels,
-                                  const std::vector<char>& found) {
+                                  const PreparedFrame& view, const Guess& guess,
+                                  std::vector<cv::Point2f> pixels, const std::vector<char>& found) {
     std::vector<std::size_t> indices;
     for (std::size_t i = 0; i < found.size(); ++i)
         if (found[i]) indices.push_back(i);
@@ -183,7 +183,7 @@ std::optional<Track> align_points(const OdometryOptions& options, const LocalKey
 }
 
 std::optional<Track> track_points(const OdometryOptions& options, const LocalKeyframe& keyframe,
-                                  const View& view, const Guess& guess, const FlowSearch& search) {
+                                  const PreparedFrame& view, const Guess& guess, const FlowSearch& search) {
     if (view.pyramid.empty() || search.from->empty()) return std::nullopt;
     const Pose color_from_keyframe =
         pose_from_twist(view.color_offset_s * guess.velocity) * guess.camera_from_keyframe;
@@ -212,7 +212,7 @@ std::optional<Track> track_points(const OdometryOptions& options, const LocalKey
 }
 
 std::optional<Track> track_surface(const OdometryOptions& options, const LocalKeyframe& keyframe,
-                                   const View& view, const Guess& guess) {
+                                   const PreparedFrame& view, const Guess& guess) {
     if (view.samples.empty() || keyframe.surface.cells() == 0) return std::nullopt;
     Track track;
     Pose pose = guess.camera_from_keyframe;
@@ -240,7 +240,7 @@ std::optional<Track> track_surface(const OdometryOptions& options, const LocalKe
     return track;
 }
 
-Guess coarse_guess(const OdometryOptions& options, const LocalKeyframe& keyframe, const View& view,
+Guess coarse_guess(const OdometryOptions& options, const LocalKeyframe& keyframe, const PreparedFrame& view,
                    const Guess& guess, const DenseReference& last, const Pose& keyframe_from_last) {
     Guess better = guess;
     Pose& pose = better.camera_from_keyframe;

@@ -16,7 +16,7 @@
 namespace planemap {
 
 /// A frame prepared for tracking.
-struct View {
+struct PreparedFrame {
     std::int64_t utime = 0;     ///< depth time, microseconds
     double color_offset_s = 0;  ///< colour time minus depth time
     const GrayImage* gray = nullptr;
@@ -80,21 +80,21 @@ struct FlowSearch {
 /// Flow from the keyframe (or another frame that saw its points) to the view, started at the guess; then the
 /// pose from points, surfaces, planes and guess together. Nothing when too few points fit one motion.
 std::optional<Track> track_points(const OdometryOptions& options, const LocalKeyframe& keyframe,
-                                  const View& view, const Guess& guess, const FlowSearch& search);
+                                  const PreparedFrame& view, const Guess& guess, const FlowSearch& search);
 
 /// The pose from points that are already found: `pixels` of the keyframe's points with `found` set.
 std::optional<Track> align_points(const OdometryOptions& options, const LocalKeyframe& keyframe,
-                                  const View& view, const Guess& guess, std::vector<cv::Point2f> pixels,
-                                  const std::vector<char>& found);
+                                  const PreparedFrame& view, const Guess& guess,
+                                  std::vector<cv::Point2f> pixels, const std::vector<char>& found);
 
 /// The pose from depth alone: point-to-plane against the keyframe's surface and planes, from the guess.
 /// Nothing when too little of the surface is seen again.
 std::optional<Track> track_surface(const OdometryOptions& options, const LocalKeyframe& keyframe,
-                                   const View& view, const Guess& guess);
+                                   const PreparedFrame& view, const Guess& guess);
 
 /// A better guess from the whole image at coarse levels against the last frame, and from depth against the
 /// keyframe's surface: for blur and motions that the prediction missed.
-Guess coarse_guess(const OdometryOptions& options, const LocalKeyframe& keyframe, const View& view,
+Guess coarse_guess(const OdometryOptions& options, const LocalKeyframe& keyframe, const PreparedFrame& view,
                    const Guess& guess, const DenseReference& last, const Pose& keyframe_from_last);
 
 /// The view's regions against the keyframe's at camera_from_keyframe: the sum over each region's points of

@@ -60,14 +60,14 @@ TEST(RegionOf, NearestPlaneWithinNoiseAndOutline) {
     EXPECT_EQ(region_of({}, {0, 0, 2}, 0.01), -1);
 }
 
-TEST(Descriptors, HammingDistanceCountsBits) {
+TEST(Descriptors, BitDifferenceCountsBits) {
     Descriptor a{}, b{};
-    EXPECT_EQ(hamming_distance(a, b), 0);
+    EXPECT_EQ(bit_difference(a, b), 0);
     b.fill(0xff);
-    EXPECT_EQ(hamming_distance(a, b), 256);
+    EXPECT_EQ(bit_difference(a, b), 256);
     b.fill(0);
     b[31] = 0x05;
-    EXPECT_EQ(hamming_distance(a, b), 2);
+    EXPECT_EQ(bit_difference(a, b), 2);
 }
 
 TEST(Descriptors, AFrameMatchesItself) {
@@ -78,7 +78,7 @@ TEST(Descriptors, AFrameMatchesItself) {
     const auto matches = match_descriptors(features, features, 64);
     EXPECT_GT(matches.size(), features.size() / 2);
     for (const auto& [i, j] : matches)
-        EXPECT_EQ(hamming_distance(features[static_cast<std::size_t>(i)].descriptor,
+        EXPECT_EQ(bit_difference(features[static_cast<std::size_t>(i)].descriptor,
                                    features[static_cast<std::size_t>(j)].descriptor),
                   0);
     EXPECT_TRUE(match_descriptors({}, features, 64).empty());

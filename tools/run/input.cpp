@@ -116,11 +116,11 @@ class LogInput : public Input {
     }
     std::string complaints() const override {
         std::string text;
-        if (log_.bytes_skipped() > 0)
-            text = std::to_string(log_.bytes_skipped()) + " bytes of " + name_ + " are no LCM events";
-        if (log_.truncated())
-            text +=
-                (text.empty() ? name_ : "; it") + std::string(" is cut short: its last event is not whole");
+        if (log_.truncated()) text = name_ + " is cut short: its last event is not whole";
+        if (log_.bytes_skipped() > 0) {
+            text += (text.empty() ? "" : "; ") + std::to_string(log_.bytes_skipped()) + " bytes of " + name_ +
+                    " are no whole LCM events";
+        }
         return text;
     }
 

@@ -88,6 +88,9 @@ void add_corridor(WorldBuilder& office) {
                      kCorridorDepth, {Pattern::kPanels, {0.86f, 0.87f, 0.88f}});
     office.add_panel("corridor north wall", {kCorridorFrom, kNear, kCorridorZ}, kEast, kDown, kLength,
                      kCorridorZ, kWhite, {&door, 1});
+    office.add_picture(0.35, 0.75, 0.5, 0.7, kPoster);
+    office.add_picture(1.2, 0.65, 0.55, 0.75, kPoster);
+    office.add_picture(3.0, 0.8, 0.42, 0.6, kPoster);
     office.add_panel("corridor south wall", {kCorridorTo, kFar, kCorridorZ}, kWest, kDown, kLength,
                      kCorridorZ, kYellow);
     office.add_picture(1.1, 0.65, 0.6, 0.85, kPoster);

@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// planemap-run and its companions as a user runs them: whole programs, real files, real exit codes.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "core/files.hpp"
+#include "core/trajectory.hpp"
+#include "data_folder.hpp"
+#include "messages/channels.hpp"
+#include "messages/convert.hpp"
+#include "messages/decode.hpp"
+#include "messages/log.hpp"
+
+namespace planemap {
+namespace {
+
+using Json = nlohmann::json;
+
+class RunTest : public testing::Test {
+  protected:
+    RunTest() { std::filesystem::create_directories(folder_); }
+    ~RunTest() override { std::filesystem::remove_all(folder_); }
+
+    struct Result {
+        int exit_code;
+        std::string out, err;
+    };
+    /// Runs a program of build/bin.
+    Result run(const std::string& program, const std::string& arguments) {
+        const std::string out = folder_ / "stdout", err = folder_ / "stderr";
+        const std::string command =
+            std::string(PLANEMAP_BIN) + "/" + program + " " + arguments + " >'" + out + "' 2>'" + err + "'";
+        const int status = std::system(command.c_str());
+        return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), read_file(out),
+                read_file(err)};
+    }
+    std::string path(const std::string& name) const { return (folder_ / name).string(); }
+    Json report(const std::string& output) {
+        return Json::parse(read_file(folder_ / output / "report.json"));
+    }
+
+    /// A run that must end with an error: exit code not 0, no crash, one line that names what is wrong.
+    void expect_error(const std::string& program, const std::string& arguments, const std::string& named) {
+        const Result result = run(program, arguments);
+        EXPECT_NE(result.exit_code, 0) << arguments;
+        EXPECT_LT(result.exit_code, 128) << arguments << "\n" << result.err;
+        EXPECT_NE(result.err.find(named), std::string::npos) << arguments << "\n" << result.err;
+        EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << arguments << "\n"
+                                                                             << result.err;
+    }
+
+    std::filesystem::path folder_ =
+        std::filesystem::temp_directory_path() / ("planemap_run_test_" + std::to_string(::getpid()));
+};
+
+TEST_F(RunTest, WritesEverythingAndTheSameBytesAgain) {
+    for (const char* output : {"a", "b"}) {
+        const Result result = run("planemap-run", "'sim:office?frames=60' --output " + path(output));
+        ASSERT_EQ(result.exit_code, 0) << result.err;
+        EXPECT_NE(result.out.find("Every ratio below is at that coverage"), std::string::npos);
+    }
+    for (const char* file : {"trajectory.txt", "planes.json", "planes.ply", "plane_map.lcmlog", "octomap.bt",
+                             "map.svg", "overhead.svg", "groundtruth.txt", "planes_truth.json"}) {
+        EXPECT_EQ(read_file(folder_ / "a" / file), read_file(folder_ / "b" / file)) << file;
+    }
+    const Json r = report("a");
+    for (const char* key : {"input", "frames", "tracked", "lost", "keyframes", "loop_closures", "planes",
+                            "wall_s", "cpu_s", "peak_rss_mb"}) {
+        EXPECT_TRUE(r.contains(key)) << key;
+    }
+    for (const char* stage : {"decode", "segmentation", "odometry", "graph", "map", "octomap"}) {
+        EXPECT_GT(r.at("stages_ms").at(stage).at("count").get<int>(), 0) << stage;
+        EXPECT_GT(r.at("stages_ms").at(stage).at("median").get<double>(), 0) << stage;
+        EXPECT_GE(r.at("stages_ms").at(stage).at("p95").get<double>(),
+                  r.at("stages_ms").at(stage).at("median").get<double>());
+    }
+    for (const char* key : {"plane_map_memory", "plane_map_message", "octomap_memory", "octomap_bt",
+                            "octomap_ot", "octomap_occupied_leaves", "raw_cloud", "voxel_cloud_1cm"}) {
+        EXPECT_GT(r.at("sizes_bytes").at(key).get<std::int64_t>(), 0) << key;
+    }
+    EXPECT_EQ(r.at("sizes_bytes").at("raw_cloud").get<std::int64_t>(), 60LL * 640 * 480 * 12);
+    EXPECT_EQ(r.at("sizes_bytes").at("octomap_bt").get<std::uintmax_t>(),
+              std::filesystem::file_size(folder_ / "a" / "octomap.bt"));
+    EXPECT_EQ(r.at("octomap").at("resolution_m").get<double>(), 0.05);
+    EXPECT_EQ(r.at("frames"), 60);
+    EXPECT_EQ(r.at("tracked"), 60);
+    for (const char* key : {"leaves_explained", "area_supported"}) {
+        EXPECT_GT(r.at("coverage").at(key).get<double>(), 0.5) << key;
+        EXPECT_LE(r.at("coverage").at(key).get<double>(), 1.0) << key;
+    }
+    EXPECT_LT(r.at("accuracy").at("ate_rmse_m").get<double>(), 0.05);
+
+    LogReader log(folder_ / "a" / "plane_map.lcmlog");
+    LogEvent event;
+    ASSERT_TRUE(log.next(event));
+    EXPECT_EQ(event.channel, channels::kMap);
+    EXPECT_EQ(event.bytes.size(), r.at("sizes_bytes").at("plane_map_message").get<std::size_t>());
+    const PlaneMap map = from_message(decode<plane_map_t>(event.bytes));
+    const Json planes = Json::parse(read_file(folder_ / "a" / "planes.json"));
+    EXPECT_EQ(map.planes.size(), planes.at("planes").size());
+    EXPECT_EQ(map.planes.size(), r.at("planes").get<std::size_t>());
+    EXPECT_FALSE(log.next(event));
+
+    const Result again = run("planemap-report", path("a"));
+    EXPECT_EQ(again.exit_code, 0);
+    EXPECT_EQ(again.out, read_file(folder_ / "a" / "report.md"));
+    const Result evaluated =
+        run("planemap-evaluate", path("a/groundtruth.txt") + " " + path("a/trajectory.txt") + " --json -");
+    EXPECT_EQ(evaluated.exit_code, 0) << evaluated.err;
+    EXPECT_EQ(Json::parse(evaluated.out).at("pairs"), 60);
+}
+
+TEST_F(RunTest, ALogGivesTheMapOfItsFramesAndACutLogWhatIsWhole) {
+    const Result simulated =
+        run("planemap-simulate", "'sim:office?frames=30' --output " + path("office.lcmlog"));
+    ASSERT_EQ(simulated.exit_code, 0) << simulated.err;
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "groundtruth.txt"));
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "planes_truth.json"));
+    ASSERT_EQ(
+        run("planemap-run", path("office.lcmlog") + " --no-octomap --output " + path("whole")).exit_code, 0);
+    EXPECT_EQ(report("whole").at("tracked"), 30);
+    EXPECT_TRUE(report("whole").at("coverage").at("leaves_explained").is_null());
+
+    const std::string log = read_file(folder_ / "office.lcmlog");
+    write_file(folder_ / "cut.lcmlog", log.substr(0, log.size() / 2));
+    const Result cut = run("planemap-run", path("cut.lcmlog") + " --no-octomap --output " + path("cut"));
+    EXPECT_EQ(cut.exit_code, 0);
+    EXPECT_NE(cut.err.find("cut.lcmlog is cut short"), std::string::npos) << cut.err;
+    EXPECT_NEAR(report("cut").at("frames").get<int>(), 15, 3);
+
+    // Bytes spoilt in the middle of a frame's images: that frame is counted, the others are mapped.
+    std::string spoilt = log;
+    for (std::size_t i = log.size() / 2; i < log.size() / 2 + 400; ++i) spoilt[i] = static_cast<char>(0xff);
+    write_file(folder_ / "spoilt.lcmlog", spoilt);
+    ASSERT_EQ(
+        run("planemap-run", path("spoilt.lcmlog") + " --no-octomap --output " + path("spoilt")).exit_code, 0);
+    EXPECT_GE(report("spoilt").at("tracked").get<int>(), 27);
+    EXPECT_LE(report("spoilt").at("tracked").get<int>(), 30);
+}
+
+TEST_F(RunTest, ALogWithoutItsCameraNeedsOne) {
+    ASSERT_EQ(run("planemap-simulate", "'sim:office?frames=5' --output " + path("office.lcmlog")).exit_code,
+              0);
+    LogReader reader(folder_ / "office.lcmlog");
+    LogWriter writer(folder_ / "bare.lcmlog");
+    std::optional<CameraInfo> camera;
+    for (LogEvent event; reader.next(event);) {
+        if (event.channel == channels::kFrame) writer.write(event);
+        if (event.channel == channels::kCameraInfo) camera = from_message(decode<camera_info_t>(event.bytes));
+    }
+    writer.close();
+    expect_error("planemap-run", path("bare.lcmlog") + " --output " + path("out"), "--camera");
+    ASSERT_TRUE(camera);
+    const Json file = {{"depth_camera",
+                        {{"width", camera->depth.width},
+                         {"height", camera->depth.height},
+                         {"fx", camera->depth.fx},
+                         {"fy", camera->depth.fy},
+                         {"cx", camera->depth.cx},
+                         {"cy", camera->depth.cy}}},
+                       {"depth_units_per_metre", camera->depth_units_per_metre},
+                       {"registered", true}};
+    write_file(folder_ / "camera.json", file.dump());
+    const Result given = run("planemap-run", path("bare.lcmlog") + " --no-octomap --camera " +
+                                                 path("camera.json") + " --output " + path("out"));
+    EXPECT_EQ(given.exit_code, 0) << given.err;
+    EXPECT_EQ(report("out").at("tracked"), 5);
+}
+
+TEST_F(RunTest, BadInputIsOneClearLine) {
+    write_file(folder_ / "file", "x");
+    std::filesystem::create_directories(folder_ / "empty");
+    expect_error("planemap-run", "/nowhere/at/all --output " + path("out"), "/nowhere/at/all");
+    expect_error("planemap-run", path("empty") + " --output " + path("out"), path("empty"));
+    expect_error("planemap-run", path("file") + " --output " + path("out"), path("file"));
+    expect_error("planemap-run", "sim:castle --output " + path("out"), "castle");
+    expect_error("planemap-run", "'sim:office?frames=-3' --output " + path("out"), "frames");
+    expect_error("planemap-run", "'sim:office?frames=5' --output /proc/nowhere", "/proc/nowhere");
+    expect_error("planemap-run", "'sim:office?frames=5' --output " + path("file"), path("file"));
+    expect_error("planemap-run", "sim:office --output " + path("out") + " --no-such-flag", "no-such-flag");
+    expect_error("planemap-run", "sim:office --output " + path("out") + " --map-merge-distance-m -1",
+                 "merge_distance_m");
+    expect_error("planemap-run", "sim:office", "--output");
+    expect_error("planemap-report", path("empty"), "report.json");
+    expect_error("planemap-evaluate", path("nothing.txt") + " " + path("nothing.txt"), "nothing.txt");
+    expect_error("planemap-simulate", "sim:office --output /proc/x/office.lcmlog", "/proc/x");
+    expect_error("planemap-map", "--output /proc/nowhere --lcm-url memq://", "/proc/nowhere");
+    expect_error("planemap-odometry", "--lcm-url nonsense://x", "nonsense://x");
+}
+
+/// Real data, physical bounds.
+TEST_F(RunTest, RedkitchenIsTrackedAndItsMapIsSmall) {
+    PLANEMAP_NEEDS_DATA("redkitchen");
+    const std::string input = test::data_folder("redkitchen");
+    const Result result = run("planemap-run", input + " --output " + path("out"));
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const Json r = report("out");
+    EXPECT_EQ(r.at("frames"), 1000);
+    EXPECT_GE(r.at("tracked").get<int>(), 950);
+    EXPECT_LT(r.at("accuracy").at("ate_rmse_m").get<double>(), 0.08);
+    const auto& sizes = r.at("sizes_bytes");
+    EXPECT_GE(sizes.at("octomap_memory").get<double>() / sizes.at("plane_map_message").get<double>(), 100);
+    EXPECT_GT(r.at("coverage").at("leaves_explained").get<double>(), 0.6);
+    EXPECT_GT(r.at("coverage").at("area_supported").get<double>(), 0.85);
+}
+
+TEST_F(RunTest, TheFloorOfFr3CabinetIsOnePlane) {
+    PLANEMAP_NEEDS_DATA("fr3_cabinet");
+    const std::filesystem::path input = test::data_folder("fr3_cabinet");
+    const Result result = run("planemap-run", input.string() + " --no-octomap --output " + path("out"));
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    // The world is the first tracked camera; motion capture says where that is.
+    const Trajectory truth = read_trajectory(input / "groundtruth.txt"),
+                     estimate = read_trajectory(folder_ / "out/trajectory.txt");
+    ASSERT_FALSE(estimate.empty());
+    const auto at = std::min_element(truth.begin(), truth.end(), [&](const auto& a, const auto& b) {
+        return std::abs(a.utime - estimate[0].utime) < std::abs(b.utime - estimate[0].utime);
+    });
+    const Pose truth_from_map = at->world_from_camera * estimate[0].world_from_camera.inverse();
+    int floors = 0;
+    double largest = 0, floor_angle = 90, floor_height = 9;
+    for (const Json& plane : Json::parse(read_file(folder_ / "out/planes.json")).at("planes")) {
+        const auto n = plane.at("normal").get<std::vector<double>>();
+        const Plane in_truth =
+            truth_from_map * Plane{Eigen::Vector3d(n[0], n[1], n[2]), plane.at("d").get<double>()};
+        const double angle =
+            angle_between(in_truth.normal, Eigen::Vector3d::UnitZ()) * 180 / 3.14159265358979;
+        const double area = plane.at("area").get<double>();
+        if (angle < 10 && std::abs(in_truth.d) < 0.15 && area > 1.0) ++floors;
+        if (area > largest) {
+            largest = area;
+            floor_angle = angle;
+            floor_height = -in_truth.d;
+        }
+    }
+    EXPECT_EQ(floors, 1);
+    EXPECT_LT(floor_angle, 3.0);
+    EXPECT_LT(std::abs(floor_height), 0.05);
+}
+
+TEST_F(RunTest, LivingroomMicroRunsThrough) {
+    PLANEMAP_NEEDS_DATA("livingroom_micro");
+    const Result result = run("planemap-run", test::data_folder("livingroom_micro").string() +
+                                                  " --no-octomap --output " + path("out"));
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_GE(report("out").at("tracked").get<int>(), 200);
+    EXPECT_GE(report("out").at("planes").get<int>(), 3);
+}
+
+}  // namespace
+}  // namespace planemap
