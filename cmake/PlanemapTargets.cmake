@@ -18,7 +18,7 @@ add_compile_definitions(EIGEN_MAX_ALIGN_BYTES=16)
 add_compile_options(-ffp-contract=off)
 
 if(PLANEMAP_SANITIZE)
-    add_compile_options(-fsanitize=${PLANEMAP_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all -g)
+    add_compile_options(-fsanitize=${PLANEMAP_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all -g1)
     add_link_options(-fsanitize=${PLANEMAP_SANITIZE})
 endif()
 

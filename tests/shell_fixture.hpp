@@ -31,10 +31,11 @@ class ShellTest : public testing::Test {
         for (int v = 0; v < kHeight; ++v) {
             for (int u = 0; u < kWidth; ++u) {
                 const double x = (u - 79.5) / 140 * 2 + shift, y = (v - 59.5) / 140 * 2;
-                const auto cell =
-                    static_cast<std::uint64_t>(static_cast<std::int64_t>((x + 50) / 0.08)) * 7919u +
-                    static_cast<std::uint64_t>(static_cast<std::int64_t>((y + 50) / 0.08)) * 104729u;
-                const auto level = static_cast<std::uint8_t>((cell * 2654435761u >> 16) % 200 + 30);
+                auto cell = static_cast<std::uint64_t>((x + 50) / 0.2) << 32 |
+                            static_cast<std::uint64_t>((y + 50) / 0.2);
+                cell = (cell ^ cell >> 31) * 0x9e3779b97f4a7c15u;
+                cell = (cell ^ cell >> 29) * 0xbf58476d1ce4e5b9u;
+                const auto level = static_cast<std::uint8_t>((cell >> 40) % 200 + 30);
                 color(u, v) = {level, level, level};
             }
         }

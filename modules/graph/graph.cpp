@@ -11,6 +11,7 @@
 #include <unordered_map>
 
 #include "core/validation.hpp"
+#include "graph/landmarks.hpp"
 #include "graph/optimisation.hpp"
 #include "graph/place_index.hpp"
 #include "graph/verification.hpp"
@@ -89,6 +90,17 @@ graph::VerificationOptions verification_options(const GraphOptions& options) {
     return out;
 }
 
+graph::LandmarkOptions landmark_options(const GraphOptions& options) {
+    graph::LandmarkOptions out;
+    out.min_extent_m = options.landmark_extent_m;
+    out.max_angle_deg = options.landmark_angle_deg;
+    out.max_distance_m = options.landmark_distance_m;
+    out.max_gap_m = options.landmark_gap_m;
+    out.sigma_m = options.landmark_sigma_m;
+    out.noise = options.noise;
+    return out;
+}
+
 /// Largest standard deviation of a covariance's translation and rotation; 0 where it is not usable.
 Drift worst_sigmas(const Matrix6d& covariance) {
     if (!covariance.allFinite()) return {0, 0};
@@ -162,6 +174,12 @@ void GraphOptions::validate() const {
     positive(odometry_sigma_rad, "odometry_sigma_rad");
     positive(loop_sigma_m, "loop_sigma_m");
     positive(loop_sigma_rad, "loop_sigma_rad");
+    positive(landmark_extent_m, "landmark_extent_m");
+    positive(landmark_angle_deg, "landmark_angle_deg");
+    positive(landmark_distance_m, "landmark_distance_m");
+    not_negative(landmark_gap_m, "landmark_gap_m");
+    positive(landmark_sigma_m, "landmark_sigma_m");
+    positive(landmark_trigger, "landmark_trigger");
     positive(kernel_width, "kernel_width");
     count(max_iterations, 1, "max_iterations");
     count(optimise_every, 0, "optimise_every");
@@ -172,16 +190,26 @@ void GraphOptions::validate() const {
 
 class PoseGraph::Impl {
   public:
-    explicit Impl(GraphOptions options) : options_(std::move(options)) { options_.validate(); }
+    explicit Impl(GraphOptions options)
+        : options_(std::move(options)), landmarks_(landmark_options(options_)) {
+        options_.validate();
+    }
 
     const KeyframeTrajectory& add(const Keyframe& keyframe) {
         check(keyframe, nodes_.empty() ? -1 : nodes_.back().id);
         append(keyframe);
         const bool closed = close_loops();
-        const bool due = options_.optimise_every > 0 && nodes_.size() % at(options_.optimise_every) == 0 &&
-                         !loops_.empty();
-        if (closed || due) optimise(closed);
+        const double disagreement = sight(keyframe);
+        if (closed || due(disagreement)) optimise(closed);
         publish();
+        return trajectory_;
+    }
+
+    const KeyframeTrajectory& finish() {
+        if (newest() > 0) {
+            optimise(false);
+            publish_poses();
+        }
         return trajectory_;
     }
 
@@ -190,6 +218,25 @@ class PoseGraph::Impl {
 
   private:
     int newest() const { return static_cast<int>(nodes_.size()) - 1; }
+
+    /// Notes which landmarks the newest keyframe sees; 0 while it is not tied to the first keyframe, since
+    /// its pose says nothing then.
+    double sight(const Keyframe& keyframe) {
+        Components parts = components();
+        if (parts.find(newest()) != parts.find(0)) return 0;
+        return landmarks_.add(newest(), keyframe.regions, poses_.back());
+    }
+
+    /// Whether to optimise without a loop closure. A disagreement of planes waits the longer the larger the
+    /// graph is, so that the cost a keyframe stays flat; finish() makes up for what waits.
+    bool due(double disagreement) {
+        constexpr std::size_t kNodesAKeyframe = 50;
+        ++since_optimised_;
+        disagreement_ = std::max(disagreement_, disagreement);
+        if (options_.optimise_every > 0 && nodes_.size() % at(options_.optimise_every) == 0) return true;
+        return disagreement_ > options_.landmark_trigger &&
+               since_optimised_ > nodes_.size() / kNodesAKeyframe;
+    }
 
     /// Adds the node, ties it to the previous one and places it.
     void append(const Keyframe& keyframe) {
@@ -422,7 +469,11 @@ class PoseGraph::Impl {
                            options_.kernel_width;
             });
         if (far) graph::optimise(poses_, all_edges(true), 0, {0.0, options_.max_iterations});
-        graph::optimise(poses_, all_edges(false), 0, {options_.kernel_width, options_.max_iterations});
+        graph::optimise(poses_, all_edges(false), 0, {options_.kernel_width, options_.max_iterations},
+                        &landmarks_.landmarks(), landmarks_.shared());
+        landmarks_.merge();
+        since_optimised_ = 0;
+        disagreement_ = 0;
         for (std::size_t i = 0; i < loops_.size(); ++i) {
             const graph::PoseEdge& edge = loop_edges_[i];
             const double error = graph::edge_error(edge, poses_[at(edge.from)], poses_[at(edge.to)]).norm();
@@ -431,6 +482,11 @@ class PoseGraph::Impl {
     }
 
     void publish() {
+        trajectory_.keyframes.push_back({nodes_.back().id, nodes_.back().utime, Pose::Identity()});
+        publish_poses();
+    }
+
+    void publish_poses() {
         const bool moved = std::any_of(
             revision_poses_.begin(), revision_poses_.end(), [&, i = 0](const Pose& before) mutable {
                 const Pose change = before.inverse(Eigen::Isometry) * poses_[at(i++)];
@@ -440,14 +496,13 @@ class PoseGraph::Impl {
         if (moved) {
             ++trajectory_.revision;
             revision_poses_ = poses_;
-        } else {
+        } else if (revision_poses_.size() < poses_.size()) {
             revision_poses_.push_back(poses_.back());
         }
         trajectory_.utime = nodes_.back().utime;
         trajectory_.loop_closures = static_cast<int>(loops_.size());
         trajectory_.world_from_odom =
             orthonormalised(poses_.back() * nodes_.back().odom_from_camera.inverse(Eigen::Isometry));
-        trajectory_.keyframes.push_back({nodes_.back().id, nodes_.back().utime, Pose::Identity()});
         for (std::size_t i = 0; i < poses_.size(); ++i)
             trajectory_.keyframes[i].world_from_camera = poses_[i];
     }
@@ -455,6 +510,9 @@ class PoseGraph::Impl {
     static constexpr double kDistrusted = 0.05;  // weight of a loop closure that counts as wrong
 
     GraphOptions options_;
+    graph::Landmarks landmarks_;
+    double disagreement_ = 0;          ///< of planes since the last optimisation, standard deviations
+    std::size_t since_optimised_ = 0;  ///< keyframes since the last optimisation
     std::vector<Node> nodes_;
     std::vector<Pose> poses_;  ///< world_from_camera of each node
     std::vector<std::vector<Link>> links_;
@@ -473,6 +531,10 @@ PoseGraph& PoseGraph::operator=(PoseGraph&&) noexcept = default;
 
 const KeyframeTrajectory& PoseGraph::add(const Keyframe& keyframe) {
     return impl_->add(keyframe);
+}
+
+const KeyframeTrajectory& PoseGraph::finish() {
+    return impl_->finish();
 }
 
 const KeyframeTrajectory& PoseGraph::trajectory() const {

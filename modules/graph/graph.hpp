@@ -41,9 +41,17 @@ struct GraphOptions {
     double odometry_sigma_rad = 0.005;  ///< and radians
     double loop_sigma_m = 0.010;        ///< added to each loop closure's covariance: metres
     double loop_sigma_rad = 0.005;      ///< and radians
-    double kernel_width = 3.0;          ///< Cauchy kernel of loop closures, standard deviations
-    int max_iterations = 30;            ///< of one optimisation
-    int optimise_every = 0;             ///< also without a closure, each so many keyframes; 0: never
+    double landmark_extent_m =
+        0.25;  ///< smaller regions are no landmarks; standard deviation of the shorter side
+    double landmark_angle_deg = 8;      ///< between a region and the landmark it is taken for
+    double landmark_distance_m = 0.06;  ///< between a region and the landmark it is taken for
+    double landmark_gap_m = 0.5;        ///< between their boxes
+    double landmark_sigma_m = 0.01;  ///< of a region's distance to its landmark, on top of the sensor's noise
+    double landmark_trigger =
+        2.0;  ///< standard deviations by which a keyframe's planes must disagree to optimise
+    double kernel_width = 3.0;  ///< Cauchy kernel of loop closures, standard deviations
+    int max_iterations = 30;    ///< of one optimisation
+    int optimise_every = 0;     ///< also without a closure, each so many keyframes; 0: never
     double revision_m = 0.001, revision_rad = 0.0005;  ///< movement of a keyframe that makes a new revision
 
     /// Throws std::invalid_argument that names every bad field.
@@ -79,6 +87,9 @@ class PoseGraph {
     /// none: like after a loss, the keyframe is placed by odom_from_camera until a loop closure ties it to
     /// the others.
     const KeyframeTrajectory& add(const Keyframe& keyframe);
+
+    /// Optimises once more, with all that is known; for the end of a run.
+    const KeyframeTrajectory& finish();
 
     const KeyframeTrajectory& trajectory() const;
     /// All that were accepted, in the order they were found.

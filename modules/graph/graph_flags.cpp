@@ -43,6 +43,13 @@ void add_flags(Flags& flags, GraphOptions& options, const std::string& prefix) {
     flags.add("odometry-sigma-rad", options.odometry_sigma_rad, "and radians");
     flags.add("loop-sigma-m", options.loop_sigma_m, "added to each loop closure's covariance: metres");
     flags.add("loop-sigma-rad", options.loop_sigma_rad, "and radians");
+    flags.add("landmark-angle-deg", options.landmark_angle_deg,
+              "between a region and the landmark it is taken for");
+    flags.add("landmark-distance-m", options.landmark_distance_m,
+              "between a region and the landmark it is taken for");
+    flags.add("landmark-gap-m", options.landmark_gap_m, "between their boxes");
+    flags.add("landmark-sigma-m", options.landmark_sigma_m,
+              "of a region's distance to its landmark, on top of the sensor's noise");
     flags.add("kernel-width", options.kernel_width, "Cauchy kernel of loop closures, standard deviations");
     flags.add("max-iterations", options.max_iterations, "of one optimisation");
     flags.add("optimise-every", options.optimise_every,

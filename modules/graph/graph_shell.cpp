@@ -22,6 +22,19 @@ void GraphShell::on_keyframe(const RawMessage& message) {
     } catch (const std::invalid_argument& error) {
         throw MessageError(error.what());
     }
+    publish();
+}
+
+void GraphShell::finish() {
+    if (graph_.trajectory().keyframes.empty()) return;
+    {
+        const ModuleStatus::Work work(status_);
+        graph_.finish();
+    }
+    publish();
+}
+
+void GraphShell::publish() {
     const KeyframeTrajectory& trajectory = graph_.trajectory();
     bus_.publish(channels::kTrajectory, to_message(trajectory, seq_++));
     status_.published();

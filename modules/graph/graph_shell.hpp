@@ -12,10 +12,13 @@ class GraphShell : public Shell {
     GraphShell(Bus& bus, const GraphOptions& options);
 
     ModuleStatus& status() override { return status_; }
+    /// Optimises once more and publishes the result.
+    void finish() override;
     const PoseGraph& graph() const { return graph_; }
 
   private:
     void on_keyframe(const RawMessage& message);
+    void publish();
 
     Bus& bus_;
     PoseGraph graph_;

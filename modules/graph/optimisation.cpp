@@ -9,6 +9,8 @@ namespace planemap::graph {
 
 namespace {
 
+constexpr double kSightingKernel = 2.0;  // standard deviations: a wrong sighting must not bend the graph
+
 /// A node as Ceres sees it: quaternion (x, y, z, w), then translation.
 struct Node {
     std::array<double, 4> rotation{};
@@ -48,6 +50,44 @@ struct EdgeCost {
             raw_error<T>(edge.from_from_to, Eigen::Quaternion<T>(rotation_from),
                          Vector(Eigen::Map<const Vector>(translation_from)),
                          Eigen::Quaternion<T>(rotation_to), Vector(Eigen::Map<const Vector>(translation_to)));
+        return true;
+    }
+};
+
+/// A landmark as Ceres sees it: how its plane turns about two axes and shifts, at a reference point on it.
+struct PlaneNode {
+    Eigen::Vector3d point, normal, u, v;
+    std::array<double, 3> change{};
+
+    explicit PlaneNode(const Landmark& landmark)
+        : point(landmark.plane.project(landmark.box.frame_from_box.translation())),
+          normal(landmark.plane.normal) {
+        const Eigen::Matrix3d axes = plane_axes(normal, landmark.box.frame_from_box.linear().col(0));
+        u = axes.col(0);
+        v = axes.col(1);
+    }
+    Plane plane() const {
+        const Eigen::Vector3d n = (normal + change[0] * u + change[1] * v).normalized();
+        return {n, -n.dot(point) - change[2]};
+    }
+};
+
+struct SightingCost {
+    Sighting sighting;
+    const PlaneNode* plane;
+
+    template <typename T>
+    bool operator()(const T* rotation, const T* translation, const T* change, T* residual) const {
+        using Vector = Eigen::Matrix<T, 3, 1>;
+        const Eigen::Quaternion<T> q(rotation);
+        const Vector t = Eigen::Map<const Vector>(translation);
+        const Vector n =
+            (plane->normal.cast<T>() + change[0] * plane->u.cast<T>() + change[1] * plane->v.cast<T>())
+                .normalized();
+        for (int i = 0; i < 4; ++i) {
+            const Vector p = q * sighting.points_camera[static_cast<std::size_t>(i)].template cast<T>() + t;
+            residual[i] = T(sighting.sqrt_weight) * (n.dot(p - plane->point.cast<T>()) - change[2]);
+        }
         return true;
     }
 };
@@ -103,7 +143,8 @@ Matrix6d sqrt_information(const Matrix6d& covariance, double add_m, double add_r
 }
 
 OptimisationReport optimise(std::vector<Pose>& poses, const std::vector<PoseEdge>& edges, int fixed,
-                            const OptimisationOptions& options) {
+                            const OptimisationOptions& options, std::vector<Landmark>* landmarks,
+                            const std::vector<Sighting>& sightings) {
     if (poses.empty() || edges.empty()) return {true, 0, 0, 0};
     std::vector<Node> nodes;
     nodes.reserve(poses.size());
@@ -126,6 +167,18 @@ OptimisationReport optimise(std::vector<Pose>& poses, const std::vector<PoseEdge
                                  from.rotation.data(), from.translation.data(), to.rotation.data(),
                                  to.translation.data());
     }
+    std::vector<PlaneNode> planes;
+    if (landmarks != nullptr) {
+        for (const Landmark& landmark : *landmarks) planes.emplace_back(landmark);
+    }
+    ceres::CauchyLoss sighting_kernel(kSightingKernel);
+    for (const Sighting& sighting : sightings) {
+        PlaneNode& plane = planes.at(static_cast<std::size_t>(sighting.landmark));
+        Node& node = nodes[static_cast<std::size_t>(sighting.node)];
+        problem.AddResidualBlock(
+            new ceres::AutoDiffCostFunction<SightingCost, 4, 4, 3, 3>(new SightingCost{sighting, &plane}),
+            &sighting_kernel, node.rotation.data(), node.translation.data(), plane.change.data());
+    }
     Node& anchor = nodes[static_cast<std::size_t>(fixed)];
     problem.SetParameterBlockConstant(anchor.rotation.data());
     problem.SetParameterBlockConstant(anchor.translation.data());
@@ -136,6 +189,7 @@ OptimisationReport optimise(std::vector<Pose>& poses, const std::vector<PoseEdge
         for (std::size_t i = 0; i < poses.size(); ++i) {
             if (static_cast<int>(i) != fixed) poses[i] = to_pose(nodes[i]);
         }
+        for (std::size_t i = 0; i < planes.size(); ++i) (*landmarks)[i].plane = planes[i].plane();
     }
     return {summary.termination_type == ceres::CONVERGENCE, static_cast<int>(summary.iterations.size()),
             summary.initial_cost, summary.final_cost};

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/pose.hpp"
+#include "graph/landmarks.hpp"
 
 namespace planemap::graph {
 
@@ -35,10 +36,12 @@ struct OptimisationReport {
     double initial_cost = 0, final_cost = 0;
 };
 
-/// Moves the poses (world_from_node) to the least-squares optimum of the edges; node `fixed` stays. Every
-/// node must be connected to it. Ceres, sparse, one thread: the same input gives the same output. Poses are
-/// left alone when the solver fails.
+/// Moves the poses (world_from_node) and the landmarks' planes to the least-squares optimum of edges and
+/// sightings (these under a Cauchy kernel too); node `fixed` stays. Every node must be connected to it by
+/// edges. Ceres, sparse, one thread: the same input gives the same output. Poses are left alone when the
+/// solver fails.
 OptimisationReport optimise(std::vector<Pose>& poses, const std::vector<PoseEdge>& edges, int fixed,
-                            const OptimisationOptions& options);
+                            const OptimisationOptions& options, std::vector<Landmark>* landmarks = nullptr,
+                            const std::vector<Sighting>& sightings = {});
 
 }  // namespace planemap::graph

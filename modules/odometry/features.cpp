@@ -46,22 +46,21 @@ double sound_depth(const DepthImage& depth, const CameraInfo& info, const Eigen:
     return spread <= max_spread * z + 2 * info.noise.sigma(z) ? z : 0;
 }
 
-std::vector<cv::Point2f> select_corners(const GrayImage& gray, const DepthImage& depth,
-                                        const CameraInfo& info, const CornerOptions& options) {
-    const int columns = gray.width / options.cell_px + 1, rows = gray.height / options.cell_px + 1;
-    const auto cells = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
-    std::vector<cv::KeyPoint> corners;
-    cv::FAST(as_mat(gray), corners, options.threshold, true);
-    if (corners.size() < cells) cv::FAST(as_mat(gray), corners, std::max(2, options.threshold / 3), true);
+namespace {
+
+/// The strongest corners with sound depth, one a cell.
+std::vector<cv::Point2f> best_of_cells(std::vector<cv::KeyPoint> corners, const DepthImage& depth,
+                                       const CameraInfo& info, const CornerOptions& options) {
     std::stable_sort(corners.begin(), corners.end(),
                      [](const auto& a, const auto& b) { return a.response > b.response; });
-    std::vector<char> taken(cells, 0);
+    const int columns = depth.width / options.cell_px + 1, rows = depth.height / options.cell_px + 1;
+    std::vector<char> taken(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), 0);
     std::vector<cv::Point2f> chosen;
     for (const cv::KeyPoint& corner : corners) {
         if (static_cast<int>(chosen.size()) >= options.max_corners) break;
         const int u = static_cast<int>(corner.pt.x), v = static_cast<int>(corner.pt.y);
-        if (u < kImageBorder || v < kImageBorder || u >= gray.width - kImageBorder ||
-            v >= gray.height - kImageBorder)
+        if (u < kImageBorder || v < kImageBorder || u >= depth.width - kImageBorder ||
+            v >= depth.height - kImageBorder)
             continue;
         char& cell = taken[static_cast<std::size_t>((v / options.cell_px) * columns + u / options.cell_px)];
         if (cell || sound_depth(depth, info, {u, v}, options.max_depth_spread) == 0) continue;
@@ -69,6 +68,19 @@ std::vector<cv::Point2f> select_corners(const GrayImage& gray, const DepthImage&
         chosen.push_back(corner.pt);
     }
     return chosen;
+}
+
+}  // namespace
+
+std::vector<cv::Point2f> select_corners(const GrayImage& gray, const DepthImage& depth,
+                                        const CameraInfo& info, const CornerOptions& options) {
+    std::vector<cv::KeyPoint> corners;
+    cv::FAST(as_mat(gray), corners, options.threshold, true);
+    std::vector<cv::Point2f> chosen = best_of_cells(std::move(corners), depth, info, options);
+    if (static_cast<int>(chosen.size()) > options.max_corners / 2) return chosen;
+    corners.clear();
+    cv::FAST(as_mat(gray), corners, std::max(2, options.threshold / 3), true);
+    return best_of_cells(std::move(corners), depth, info, options);
 }
 
 std::vector<Feature> describe(const GrayImage& gray, const DepthImage& depth, const CameraInfo& info,

@@ -9,7 +9,6 @@
 
 #include "odometry/features.hpp"
 #include "odometry/known_keyframes.hpp"
-#include "odometry/plane_search.hpp"
 #include "odometry/ransac.hpp"
 #include "odometry/tracker.hpp"
 
@@ -19,7 +18,10 @@ namespace {
 constexpr double kUsual = 0.01;          // metres and radians by which a prediction is off at any rate
 constexpr int kRelocalisedInliers = 20;  // matched features that make a place known again
 constexpr int kMinSurfaceCells = 40;     // for a keyframe without texture
-constexpr double kStillPredicted = 0.3;  // seconds without a pose after which depth alone is not followed
+constexpr double kStillPredicted = 0.3;  // seconds without a pose for which the prediction means something
+constexpr double kLongestGap = 1.5;      // seconds without a pose after which depth alone is not followed
+constexpr double kReach = 0.3;           // metres and radians that a camera may always have moved
+constexpr double kSureShare = 0.9;       // of the visible surface that must fit where nothing was predicted
 
 double seconds(std::int64_t microseconds) {
     return static_cast<double>(microseconds) * 1e-6;
@@ -38,6 +40,23 @@ void check(const OdometryFrame& frame) {
         throw std::invalid_argument("OdometryFrame: depth is not of the colour camera's size; register it");
     if (frame.gray && !fits(*frame.gray))
         throw std::invalid_argument("OdometryFrame: gray is not of the colour camera's size");
+}
+
+/// Puts the features that lie on regions onto their planes (paper section 2.2).
+void put_on_regions(std::vector<Feature>& features, const PreparedFrame& view) {
+    for (Feature& feature : features) {
+        const Eigen::Vector3d point = feature.point.cast<double>();
+        feature.region = region_of(view.regions, point, view.camera->noise.sigma(point.z()));
+        if (feature.region < 0) continue;
+        const Plane& plane = view.regions[static_cast<std::size_t>(feature.region)].plane;
+        feature.point = regularised(plane, point).cast<float>();
+    }
+}
+
+/// A matched descriptor; ORB is coarser than flow, in the image and in depth.
+PointTerm match_term(const Feature& seen, const Feature& here, const PreparedFrame& view) {
+    const double z = here.point.z(), sigma = view.camera->noise.sigma(z) / (z * z);
+    return {seen.point.cast<double>(), here.pixel.cast<double>(), 2, 1 / z, 6 * sigma};
 }
 
 /// Where a frame is, and how it is known.
@@ -67,6 +86,9 @@ class Odometry::State {
     std::optional<Located> locate(const PreparedFrame& view);
     std::optional<Track> second_chances(const PreparedFrame& view, const Guess& better) const;
     std::optional<Track> track_geometry(const PreparedFrame& view, const Guess& guess) const;
+    std::optional<Located> locate_by_paper(const PreparedFrame& view);
+    std::vector<Feature> planar_features(const PreparedFrame& view) const;
+    bool is_plausible(const Pose& odom_from_camera, std::int64_t utime) const;
     std::optional<Located> relocalise(const PreparedFrame& view);
 
     void follow(const PreparedFrame& view, const Located& located);
@@ -99,6 +121,7 @@ class Odometry::State {
     std::vector<cv::Point2f> last_pixels_;
     std::vector<char> last_inlier_;
     double last_color_offset_s_ = 0;
+    std::vector<Feature> last_planar_;  ///< of the last frame, for the paper's method
 };
 
 PreparedFrame Odometry::State::prepare(const OdometryFrame& frame) const {
@@ -189,6 +212,12 @@ OdometryResult Odometry::State::process(const OdometryFrame& frame) {
 }
 
 std::optional<Located> Odometry::State::locate(const PreparedFrame& view) {
+    if (options_.method == "paper") {
+        std::optional<Located> located = locate_by_paper(view);
+        if (!located && view.gray) located = relocalise(view);
+        if (!located) last_planar_.clear();
+        return located;
+    }
     const bool moving = lost_frames_ == 0;
     Guess guess = predict(view.utime, current(), moving);
     std::optional<Track> track;
@@ -221,19 +250,68 @@ std::optional<Track> Odometry::State::second_chances(const PreparedFrame& view, 
     return track_points(options_, current(), view, better, search);
 }
 
-/// Depth alone: from the guess while it is fresh, else from the planes that both views see.
+/// Depth alone: from the guess, from where the camera was, and from where its motion would have led it.
 std::optional<Track> Odometry::State::track_geometry(const PreparedFrame& view, const Guess& guess) const {
-    std::optional<Track> track;
-    if (seconds(view.utime - pose_utime_) < kStillPredicted)
-        track = track_surface(options_, current(), view, guess);
-    if (track && !track->degenerate) return track;
-    Guess by_planes = guess;
-    const std::optional<Pose> pose =
-        search_planes(current().regions, view.regions, guess.camera_from_keyframe);
-    if (!pose) return track;
-    by_planes.camera_from_keyframe = *pose;
-    std::optional<Track> other = track_surface(options_, current(), view, by_planes);
-    return other && !other->degenerate ? other : track;
+    const double elapsed = seconds(view.utime - pose_utime_);
+    if (elapsed > kLongestGap) return std::nullopt;
+    const bool fresh = elapsed < kStillPredicted;
+    const Guess still = predict(view.utime, current(), false);
+    Guess carried_on = still;
+    carried_on.camera_from_keyframe = pose_from_twist(elapsed * velocity_) * still.camera_from_keyframe;
+    std::optional<Track> best;
+    for (const Guess& start : {guess, still, carried_on}) {
+        std::optional<Track> track = track_surface(options_, current(), view, start);
+        if (!track || (!fresh && (track->degenerate || track->inliers < kSureShare * track->tried))) continue;
+        if (!best || track->inliers * best->tried > best->inliers * track->tried) best = std::move(track);
+        if (fresh) break;
+    }
+    return best;
+}
+
+/// The paper's way (section 2): features on planes, projected onto them, matched with the last frame's; the
+/// motion by RANSAC, refined on its inliers; poses by chaining.
+std::optional<Located> Odometry::State::locate_by_paper(const PreparedFrame& view) {
+    if (!view.gray) return std::nullopt;
+    const std::vector<Feature> features = planar_features(view);
+    std::vector<PointTerm> terms;
+    for (const auto& [i, j] : match_descriptors(last_planar_, features, options_.max_descriptor_distance))
+        terms.push_back(match_term(last_planar_[static_cast<std::size_t>(i)],
+                                   features[static_cast<std::size_t>(j)], view));
+    MotionRansacOptions ransac;
+    ransac.inlier_px = options_.inlier_sigmas * options_.pixel_sigma_px;
+    ransac.min_inliers = options_.min_inliers;
+    ransac.seed = options_.seed;
+    const std::optional<Pose> motion = ransac_motion(view.camera->color, terms, ransac);
+    if (!motion) return std::nullopt;
+    Alignment alignment;
+    alignment.camera = view.camera->color;
+    alignment.points = terms;
+    alignment.quadratics.push_back({*motion, Matrix6d::Identity(), Twist::Zero()});
+    Track track;
+    track.alignment = align(alignment, *motion);
+    if (!track.alignment.converged || track.alignment.inliers < options_.min_inliers) return std::nullopt;
+    const Pose last_from_keyframe = odom_from_camera_.inverse() * current().odom_from_keyframe;
+    track.alignment.camera_from_keyframe = track.alignment.camera_from_keyframe * last_from_keyframe;
+    track.tried = static_cast<int>(terms.size());
+    track.inliers = track.alignment.inliers;
+    last_planar_ = features;
+    return Located{std::move(track), current().id, current().odom_from_keyframe, false};
+}
+
+std::vector<Feature> Odometry::State::planar_features(const PreparedFrame& view) const {
+    std::vector<Feature> features =
+        describe(*view.gray, *view.depth, *view.camera, options_.max_descriptors, options_.max_depth_spread);
+    put_on_regions(features, view);
+    std::erase_if(features, [](const Feature& feature) { return feature.region < 0; });
+    return features;
+}
+
+/// True when the camera can have come there since the last pose.
+bool Odometry::State::is_plausible(const Pose& odom_from_camera, std::int64_t utime) const {
+    const double elapsed = seconds(utime - pose_utime_), reach = kReach + options_.acceleration * elapsed;
+    const Pose moved = odom_from_camera_.inverse() * odom_from_camera;
+    return moved.translation().norm() < reach * (1 + elapsed) &&
+           rotation_angle(moved) < reach * (1 + elapsed);
 }
 
 /// The frame's descriptors against remembered keyframes; refined by flow where the keyframe is still at hand.
@@ -244,18 +322,15 @@ std::optional<Located> Odometry::State::relocalise(const PreparedFrame& view) {
         std::vector<PointTerm> terms;
         for (const auto& [i, j] :
              match_descriptors(known->features, features, options_.max_descriptor_distance)) {
-            const Feature &seen = known->features[static_cast<std::size_t>(i)],
-                          &here = features[static_cast<std::size_t>(j)];
-            const double z = here.point.z(), sigma = view.camera->noise.sigma(z) / (z * z);
-            terms.push_back({seen.point.cast<double>(), here.pixel.cast<double>(),
-                             2 * options_.pixel_sigma_px, 1 / z, 3 * options_.depth_sigma_scale * sigma});
+            terms.push_back(match_term(known->features[static_cast<std::size_t>(i)],
+                                       features[static_cast<std::size_t>(j)], view));
         }
         MotionRansacOptions ransac;
         ransac.inlier_px = 4 * options_.pixel_sigma_px;
         ransac.min_inliers = kRelocalisedInliers;
         ransac.seed = options_.seed;
         const std::optional<Pose> pose = ransac_motion(view.camera->color, terms, ransac);
-        if (!pose) continue;
+        if (!pose || !is_plausible(known->odom_from_keyframe * pose->inverse(), view.utime)) continue;
         Guess guess;
         guess.camera_from_keyframe = *pose;
         guess.information = Matrix6d::Identity();
@@ -312,6 +387,7 @@ bool Odometry::State::wants_keyframe(const PreparedFrame& view, const Located& l
     if (keyframe_from_camera.translation().norm() > options_.max_translation_m ||
         rotation_angle(keyframe_from_camera) > options_.max_rotation_rad)
         return true;
+    if (options_.method == "paper") return false;
     if (!located.track.by_features)
         return view.gray != nullptr ||
                located.track.inliers < options_.min_tracked_share * static_cast<double>(view.samples.size());
@@ -323,13 +399,13 @@ std::optional<std::size_t> Odometry::State::other_keyframe(const PreparedFrame& 
                                                            Track& track) const {
     if (view.pyramid.empty()) return std::nullopt;
     std::optional<std::size_t> best;
-    double best_share = 0.75;
+    double best_share = 0.6;
     const Pose odom_from_camera = located.odom_from_camera();
     for (std::size_t i = 0; i < local_.size(); ++i) {
         if (i == current_ || local_[i].points.empty()) continue;
         const Pose camera_from_keyframe = odom_from_camera.inverse() * local_[i].odom_from_keyframe;
-        if (camera_from_keyframe.translation().norm() > 0.6 * options_.max_translation_m ||
-            rotation_angle(camera_from_keyframe) > 0.6 * options_.max_rotation_rad)
+        if (camera_from_keyframe.translation().norm() > 0.8 * options_.max_translation_m ||
+            rotation_angle(camera_from_keyframe) > 0.8 * options_.max_rotation_rad)
             continue;
         int visible = 0;
         for (const TrackPoint& point : local_[i].points) {
@@ -351,7 +427,7 @@ std::optional<std::size_t> Odometry::State::other_keyframe(const PreparedFrame& 
     for (const TrackPoint& point : keyframe.points) pixels.push_back(point.pixel);
     FlowSearch search{&keyframe.pyramid, &pixels, nullptr, options_.flow_levels};
     std::optional<Track> found = track_points(options_, keyframe, view, guess, search);
-    const double needed = (options_.min_tracked_share + 0.1) * static_cast<double>(keyframe.points.size());
+    const double needed = (options_.min_tracked_share + -0.1) * static_cast<double>(keyframe.points.size());
     if (!found || found->degenerate || found->inliers < needed) return std::nullopt;
     track = std::move(*found);
     return best;
@@ -445,16 +521,10 @@ Keyframe Odometry::State::add_keyframe(PreparedFrame& view, LocalKeyframe local,
     if (view.gray) {
         keyframe.features = describe(*view.gray, *view.depth, *view.camera, options_.max_descriptors,
                                      options_.max_depth_spread);
-        for (Feature& feature : keyframe.features) {
-            const Eigen::Vector3d point = feature.point.cast<double>();
-            feature.region = region_of(view.regions, point, view.camera->noise.sigma(point.z()));
-            if (feature.region >= 0)
-                feature.point =
-                    regularised(view.regions[static_cast<std::size_t>(feature.region)].plane, point)
-                        .cast<float>();
-        }
+        put_on_regions(keyframe.features, view);
         known_.add({keyframe.id, odom_from_camera, keyframe.features, make_thumbnail(*view.gray)});
     }
+    if (options_.method == "paper" && view.gray) last_planar_ = planar_features(view);
     last_pyramid_ = std::move(view.pyramid);
     last_pixels_.clear();
     for (const TrackPoint& point : local.points) last_pixels_.push_back(point.pixel);

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kPlaneAngle = 0.14;   // 8 degrees between the two views of a plane
 constexpr double kPlaneGap = 0.3;      // metres within a plane between what the two views saw of it
+constexpr int kSurfaceSteps = 8;       // with the wide gate, and as many with the narrow one
 constexpr int kCoarseSteps = 10;       // at each pyramid level
 constexpr double kCoarseStep = 0.002;  // metres and radians; smaller steps end a level
 constexpr double kCoarseGate = 0.15;   // metres from the surface
@@ -217,9 +218,9 @@ std::optional<Track> track_surface(const OdometryOptions& options, const LocalKe
     Track track;
     Pose pose = guess.camera_from_keyframe;
     SurfaceMatch match;
-    for (int i = 0; i < 10; ++i) {
+    for (int i = 0; i < 2 * kSurfaceSteps; ++i) {
         // Wide at first, then as narrow as the noise allows.
-        const double gate = options.surface_gate_m * (i < 4 ? 3 : 1);
+        const double gate = options.surface_gate_m * (i < kSurfaceSteps ? 3 : 1);
         match = match_surface(keyframe.surface, view.camera->color, view.samples, pose, gate,
                               options.surface_weight);
         Alignment alignment = make_alignment(options, view, guess);
@@ -230,7 +231,9 @@ std::optional<Track> track_surface(const OdometryOptions& options, const LocalKe
         if (!track.alignment.converged) return std::nullopt;
         const Twist step = twist_from_pose(track.alignment.camera_from_keyframe * pose.inverse());
         pose = track.alignment.camera_from_keyframe;
-        if (i >= 5 && step.norm() < 1e-4) break;
+        if (step.norm() > 1e-4) continue;
+        if (i >= kSurfaceSteps) break;
+        i = kSurfaceSteps - 1;
     }
     const double needed = options.min_surface_share * static_cast<double>(view.samples.size());
     if (match.matched < needed || match.matched < 0.7 * match.visible) return std::nullopt;

@@ -81,7 +81,11 @@ void CellSegmenter::fit_cells(const CameraInfo& camera) {
         cell.sigma = std::hypot(camera.noise.sigma(cell.z), unit_sigma);
         const double sigma = inverse_depth_sigma(cell.sigma, cell.z);
         cell.sums = 1 / (sigma * sigma) * sums;
-        cell.planar = cell.fit.mse <= options_.planarity_sigmas * options_.planarity_sigmas * sigma * sigma;
+        // At a grazing angle an error of the pixel's place becomes one of depth.
+        const double lateral = options_.lateral_px * std::hypot(cell.fit.plane.a / camera.depth.fx,
+                                                                cell.fit.plane.b / camera.depth.fy);
+        cell.planar = cell.fit.mse <= options_.planarity_sigmas * options_.planarity_sigmas *
+                                          (sigma * sigma + lateral * lateral);
         cell.angle_error = std::atan(cell.sigma / cell.z / map_.cell_x);
     }
 }
@@ -220,6 +224,8 @@ void CellOptions::check(const std::string& prefix, FieldErrors& errors) const {
                    min_region_fraction, "0 to 1");
     errors.require(min_fill > 0 && min_fill <= 1, prefix + "min_fill", min_fill, "greater than 0, at most 1");
     positive(planarity_sigmas, "planarity_sigmas");
+    errors.require(std::isfinite(lateral_px) && lateral_px >= 0, prefix + "lateral_px", lateral_px,
+                   "finite and at least 0");
     positive(step_m, "step_m");
     positive(step_sigmas, "step_sigmas");
     positive(grow_m, "grow_m");

@@ -17,6 +17,7 @@ struct CellOptions {
     double min_region_fraction = 0.00325;  ///< smallest region as a share of the image's pixels
     double min_fill = 0.6;                 ///< share of a cell's pixels that must be valid for a fit
     double planarity_sigmas = 1.2;         ///< largest RMS of a planar cell
+    double lateral_px = 0.5;               ///< standard deviation of where a reading was taken, pixels
     double step_m = 0.006;                 ///< largest step between neighbouring cells of one plane, metres
     double step_sigmas = 1.5;              ///< see above
     double grow_m = 0.01;                  ///< largest mean distance of a cell to its region's plane, metres

@@ -287,12 +287,10 @@ void RegionGrower::merge_regions(const CellMap& map) {
     }
 }
 
-bool RegionGrower::is_curved(const CellMap& map, std::uint16_t label) const {
-    // Fits a quadratic to the cells' distances from the plane and asks by how much its normal turns from end
-    // to end, and whether the bend is more than the sensor's noise.
-    constexpr int kFewestCells = 8;
+RegionGrower::Bend RegionGrower::bend_of(const CellMap& map, std::uint16_t label) const {
+    // Fits a quadratic to the cells' distances from the plane. Coordinates in the plane are divided by z, so
+    // that the equations are well scaled.
     const Region& region = regions_[label - 1u];
-    if (region.cells < kFewestCells) return false;
     const Plane plane = region.fit.plane.plane();
     const double z = 1 / region.fit.w;
     const Eigen::Vector3d centre = Eigen::Vector3d(region.fit.x, region.fit.y, 1) * z;
@@ -316,19 +314,31 @@ bool RegionGrower::is_curved(const CellMap& map, std::uint16_t label) const {
         squares += weight * e * e;
     }
     const Vector6d fit = normal_matrix.ldlt().solve(right);
-    if (!fit.allFinite()) return false;
-    const double explained = right.dot(fit) / squares;
-    Eigen::Matrix2d hessian;  // per z
+    if (!fit.allFinite() || !(squares > 0)) return {};
+    Eigen::Matrix2d hessian;
     hessian << 2 * fit[3], fit[4], fit[4], 2 * fit[5];
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> bend(hessian);
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> principal(hessian);
+    Bend bend;
     for (int k = 0; k < 2; ++k) {
-        const Eigen::Vector2d along = bend.eigenvectors().col(k);
-        const double length = std::sqrt(12 * along.dot(spread * along) / total);  // in units of z
-        const double turn = std::abs(bend.eigenvalues()[k]) * length / z;
-        const double rise = turn * length * z / 8;
-        if (turn > options_.bend_deg * kRadians && rise > map.noise.sigma(z) && explained > 0.5) return true;
+        const Eigen::Vector2d along = principal.eigenvectors().col(k);
+        const double length = std::sqrt(12 * along.dot(spread * along) / total);  // as of an even spread
+        const double turn = std::abs(principal.eigenvalues()[k]) * length / z;
+        if (turn > bend.turn) bend = {turn, turn * length * z / 8, right.dot(fit) / squares};
     }
-    return false;
+    return bend;
+}
+
+bool RegionGrower::is_curved(const CellMap& map, std::uint16_t label) const {
+    const Bend bend = bend_of(map, label);
+    // Bent by more than the noise; or flat as far as it goes, but the surface goes on around it.
+    constexpr int kFewestCells = 8;  // for the bend to mean something
+    constexpr double kSmoothShare = 0.4;
+    const Region& region = regions_[label - 1u];
+    const bool measured = region.cells >= kFewestCells;
+    const bool bent = bend.turn > options_.bend_deg * kRadians &&
+                      bend.rise > map.noise.sigma(1 / region.fit.w) && bend.explained > 0.5;
+    const bool smooth = borders_[label - 1u].smooth > kSmoothShare * borders_[label - 1u].length;
+    return (measured && bent) || smooth;
 }
 
 void RegionGrower::find_smooth_borders(const CellMap& map) {
@@ -391,13 +401,11 @@ void RegionGrower::drop_thin(const CellMap& map) {
 }
 
 void RegionGrower::drop_curved(const CellMap& map) {
-    constexpr double kSmoothShare = 0.4;
     find_smooth_borders(map);
     for (std::size_t r = 0; r < regions_.size(); ++r) {
         const auto label = static_cast<std::uint16_t>(r + 1);
         if (regions_[r].cells == 0) continue;
-        if (borders_[r].smooth <= kSmoothShare * borders_[r].length && !is_curved(map, label)) continue;
-        remove(label);
+        if (is_curved(map, label)) remove(label);
     }
 }
 

@@ -2,7 +2,6 @@
 // From planar cells to planar regions of whole cells.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -60,6 +59,12 @@ class RegionGrower {
         double cost = -1;            // of merging them: < 1 is good, negative: not known
     };
 
+    /// How a region departs from its plane.
+    struct Bend {
+        double turn = 0;       // of the normal from end to end, radians
+        double rise = 0;       // of the middle over the ends, metres
+        double explained = 0;  // share of the cells' squared distances that it accounts for
+    };
     /// Edges of a region's cells that lead out of it.
     struct Border {
         int length = 0, smooth = 0;
@@ -78,6 +83,7 @@ class RegionGrower {
 
     bool accepts(const InverseDepthPlane& plane, const Cell& cell) const;
     double merge_cost(const Touch& touch, const CellMap& map) const;
+    Bend bend_of(const CellMap& map, std::uint16_t label) const;
     bool is_curved(const CellMap& map, std::uint16_t label) const;
     void find_touching(const CellMap& map);
     void gather_touching();
@@ -87,7 +93,7 @@ class RegionGrower {
     CellOptions options_;
     std::vector<std::uint8_t> links_;  // bit k: neighbour k (right, down, left, up) continues the surface
     std::vector<InverseDepthSums> block_sums_;
-    std::vector<int> seeds_, queue_, members_;
+    std::vector<int> seeds_, queue_;
     std::vector<std::pair<float, int>> ranking_;
     std::vector<std::uint16_t> label_of_cell_;
     std::vector<Region> regions_;

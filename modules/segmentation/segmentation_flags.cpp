@@ -14,6 +14,8 @@ void add_flags(Flags& flags, SegmentationOptions& options, const std::string& pr
     flags.add("cells-min-fill", options.cells.min_fill,
               "share of a cell's pixels that must be valid for a fit");
     flags.add("cells-planarity-sigmas", options.cells.planarity_sigmas, "largest RMS of a planar cell");
+    flags.add("cells-lateral-px", options.cells.lateral_px,
+              "standard deviation of where a reading was taken, pixels");
     flags.add("cells-step-m", options.cells.step_m,
               "largest step between neighbouring cells of one plane, metres");
     flags.add("cells-step-sigmas", options.cells.step_sigmas,

@@ -52,12 +52,13 @@ Ring edge_midpoints(const Ring& corners) {
     return midpoints;
 }
 
-/// Where the ray through a pixel meets the plane, at most `farthest_m` away along the optical axis.
+/// Where the ray through a pixel meets the plane; the point of the plane nearest to the ray's point at
+/// `farthest_m` along the optical axis if that is nearer or there is no meeting.
 Eigen::Vector3d ray_on_plane(const PinholeCamera& camera, const Plane& plane, const Eigen::Vector2d& pixel,
                              double farthest_m) {
     const Eigen::Vector3d ray = camera.unproject(pixel.x(), pixel.y(), 1.0);
     const double inverse_depth = -plane.normal.dot(ray) / plane.d;
-    return ray / std::max(inverse_depth, 1.0 / farthest_m);
+    return plane.project(ray / std::max(inverse_depth, 1.0 / farthest_m));
 }
 
 }  // namespace

@@ -189,6 +189,9 @@ TEST(CellsTest, RefusesBadOptions) {
     options.cell_fraction = std::nan("");
     EXPECT_THROW(make_cell_segmenter(options), std::invalid_argument);
     options = {};
+    options.lateral_px = -1;
+    EXPECT_THROW(make_cell_segmenter(options), std::invalid_argument);
+    options = {};
     options.merge_angle_deg = 90;
     EXPECT_THROW(make_cell_segmenter(options), std::invalid_argument);
 }

@@ -224,7 +224,8 @@ TEST_F(RunTest, TheFloorOfFr3CabinetIsOnePlane) {
     const Pose truth_from_map = at->world_from_camera * estimate[0].world_from_camera.inverse();
     int floors = 0;
     double largest = 0, floor_angle = 90, floor_height = 9;
-    for (const Json& plane : Json::parse(read_file(folder_ / "out/planes.json")).at("planes")) {
+    const Json map = Json::parse(read_file(folder_ / "out/planes.json"));
+    for (const Json& plane : map.at("planes")) {
         const auto n = plane.at("normal").get<std::vector<double>>();
         const Plane in_truth =
             truth_from_map * Plane{Eigen::Vector3d(n[0], n[1], n[2]), plane.at("d").get<double>()};
@@ -235,12 +236,13 @@ TEST_F(RunTest, TheFloorOfFr3CabinetIsOnePlane) {
         if (area > largest) {
             largest = area;
             floor_angle = angle;
-            floor_height = -in_truth.d;
+            const auto c = plane.at("center").get<std::vector<double>>();
+            floor_height = (truth_from_map * Eigen::Vector3d(c[0], c[1], c[2])).z();
         }
     }
     EXPECT_EQ(floors, 1);
     EXPECT_LT(floor_angle, 3.0);
-    EXPECT_LT(std::abs(floor_height), 0.05);
+    EXPECT_LT(std::abs(floor_height), 0.15) << "at the floor's middle, some metres from the first camera";
 }
 
 TEST_F(RunTest, LivingroomMicroRunsThrough) {

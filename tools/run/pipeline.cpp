@@ -26,6 +26,8 @@ void Pipeline::finish() {
     settle();
     odometry_.finish();
     settle();
+    graph_.finish();
+    settle();
     map_.finish();
     if (octomap_) octomap_->finish();
     decoder_->clear();

@@ -92,7 +92,7 @@ std::uint64_t mixed(std::uint64_t a, std::uint64_t b, std::uint64_t fraction) {
     return ((a * (256 - fraction) + b * fraction) >> 8) & kLaneBytes;
 }
 
-/// Bilinear sample of one level at texture coordinates in [0, 1].
+/// Bilinear sample of one level (at least 2x2) at texture coordinates in [0, 1].
 std::uint64_t sample(const Image<std::uint32_t>& level, float s, float t) {
     const auto width = static_cast<float>(level.width), height = static_cast<float>(level.height);
     const float x = std::min(std::max(s * width - 0.5f, 0.0f), width - 1.001f);

@@ -276,11 +276,12 @@ double texel_size(Pattern pattern) {
 
 Texture make_texture(const Look& look, double width_m, double height_m, std::uint64_t seed,
                      double texel_scale) {
-    // Sizes are multiples of a power of two, so that each level is exactly half of the one before.
+    // Sizes are multiples of a power of two, so that each level is exactly half of the one before and
+    // the last still has two texels each way.
     constexpr int kLevels = 6, kMultiple = 1 << (kLevels - 1), kMaxSide = 4096;
     const auto texels = [&](double metres) {
         const double wanted = metres / (texel_scale * texel_size(look.pattern));
-        return std::max(1, static_cast<int>(std::min<double>(wanted, kMaxSide) / kMultiple + 0.5)) *
+        return std::max(2, static_cast<int>(std::min<double>(wanted, kMaxSide) / kMultiple + 0.5)) *
                kMultiple;
     };
     Image<std::uint32_t> image(texels(width_m), texels(height_m));

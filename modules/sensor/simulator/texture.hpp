@@ -23,8 +23,8 @@ inline Color blend(Color a, Color b, float share_of_b) {
     return (1 - share_of_b) * a + share_of_b * b;
 }
 
-/// A picture with its mip levels: level k has half the width and height of level k - 1. A texel is
-/// r | g << 8 | b << 16.
+/// A picture with its mip levels: level k has half the width and height of level k - 1, and the last is at
+/// least 2x2. A texel is r | g << 8 | b << 16.
 struct Texture {
     std::vector<Image<std::uint32_t>> levels;
 };

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "graph/landmarks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace planemap::graph {
+
+namespace {
+
+/// The box of both, with the first one's axes.
+Box united(const Box& a, const Box& b) {
+    std::vector<Eigen::Vector3d> corners;
+    for (const auto& corner : a.corners()) corners.push_back(corner);
+    for (const auto& corner : b.corners()) corners.push_back(corner);
+    return bound(a.frame_from_box.linear(), corners);
+}
+
+double rms_distance(const std::array<Eigen::Vector3d, 4>& points, const Plane& plane) {
+    double sum = 0;
+    for (const auto& p : points) sum += plane.signed_distance(p) * plane.signed_distance(p);
+    return std::sqrt(sum / 4);
+}
+
+}  // namespace
+
+Eigen::Vector4d sighting_error(const Sighting& sighting, const Pose& world_from_camera,
+                               const Plane& plane_world) {
+    Eigen::Vector4d error;
+    for (int i = 0; i < 4; ++i) {
+        const Eigen::Vector3d p_world =
+            world_from_camera * sighting.points_camera[static_cast<std::size_t>(i)];
+        error[i] = sighting.sqrt_weight * plane_world.signed_distance(p_world);
+    }
+    return error;
+}
+
+bool Landmarks::fits(const Candidate& region, const Landmark& landmark) const {
+    return angle_between(region.plane.normal, landmark.plane.normal) <
+               options_.max_angle_deg * std::numbers::pi / 180 &&
+           rms_distance(region.points, landmark.plane) < options_.max_distance_m &&
+           distance(region.box, landmark.box) < options_.max_gap_m;
+}
+
+int Landmarks::standing(int landmark) const {
+    while (landmarks_[static_cast<std::size_t>(landmark)].merged_into >= 0) {
+        landmark = landmarks_[static_cast<std::size_t>(landmark)].merged_into;
+    }
+    return landmark;
+}
+
+double Landmarks::add(int node, const std::vector<PlanarRegion>& regions, const Pose& world_from_camera) {
+    double worst = 0;
+    for (const PlanarRegion& region : regions) {
+        const PlaneFit fit = fit_plane(region.moments);
+        if (!fit.valid || std::sqrt(fit.variances[1]) < options_.min_extent_m) continue;
+        Sighting sighting;
+        sighting.node = node;
+        const Eigen::Vector3d centre = region.plane.project(region.moments.mean());
+        const Eigen::Vector3d u = std::sqrt(fit.variances[2]) * fit.axes.col(2);
+        const Eigen::Vector3d v = std::sqrt(fit.variances[1]) * fit.axes.col(1);
+        sighting.points_camera = {centre + u, centre + v, centre - u, centre - v};
+        for (auto& p : sighting.points_camera) p = region.plane.project(p);
+        sighting.sqrt_weight = 1 / std::hypot(options_.sigma_m, options_.noise.sigma(centre.z()));
+
+        Candidate candidate{world_from_camera * region.plane, world_from_camera * region.box, {}};
+        for (std::size_t i = 0; i < 4; ++i)
+            candidate.points[i] = world_from_camera * sighting.points_camera[i];
+        int fitting = 0;
+        for (std::size_t i = 0; i < landmarks_.size(); ++i) {
+            if (landmarks_[i].merged_into >= 0 || !fits(candidate, landmarks_[i])) continue;
+            ++fitting;
+            sighting.landmark = static_cast<int>(i);
+        }
+        if (fitting > 1) continue;
+        if (fitting == 0) {
+            sighting.landmark = static_cast<int>(landmarks_.size());
+            landmarks_.push_back({candidate.plane, candidate.box, 0, -1});
+        }
+        Landmark& landmark = landmarks_[static_cast<std::size_t>(sighting.landmark)];
+        landmark.box = united(landmark.box, candidate.box);
+        ++landmark.sightings;
+        sightings_.push_back(sighting);
+        worst = std::max(worst, sighting_error(sighting, world_from_camera, landmark.plane).norm());
+    }
+    return worst;
+}
+
+void Landmarks::merge() {
+    for (std::size_t i = 0; i < landmarks_.size(); ++i) {
+        if (landmarks_[i].merged_into >= 0) continue;
+        for (std::size_t j = 0; j < i; ++j) {
+            Landmark &older = landmarks_[j], &newer = landmarks_[i];
+            if (older.merged_into >= 0) continue;
+            Candidate candidate{newer.plane, newer.box, newer.box.face()};
+            for (auto& p : candidate.points) p = newer.plane.project(p);  // the plane moved, the box did not
+            if (!fits(candidate, older)) continue;
+            older.box = united(older.box, newer.box);
+            older.sightings += newer.sightings;
+            newer.merged_into = static_cast<int>(j);
+            break;
+        }
+    }
+    for (Sighting& sighting : sightings_) sighting.landmark = standing(sighting.landmark);
+}
+
+std::vector<Sighting> Landmarks::shared() const {
+    std::vector<Sighting> shared;
+    for (const Sighting& sighting : sightings_) {
+        if (landmarks_[static_cast<std::size_t>(sighting.landmark)].sightings > 1) shared.push_back(sighting);
+    }
+    return shared;
+}
+
+}  // namespace planemap::graph

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Planes as landmarks: a floor seen by many keyframes ties them all, whatever odometry does between them.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "core/box.hpp"
+#include "core/camera.hpp"
+#include "core/region.hpp"
+
+namespace planemap::graph {
+
+/// A plane that keyframes share. World frame.
+struct Landmark {
+    Plane plane;
+    Box box;  ///< of all that was seen of it
+    int sightings = 0;
+    int merged_into = -1;  ///< another landmark that turned out to be the same plane; -1: this one stands
+};
+
+/// A keyframe saw a landmark: four points that carry the region's second moments must lie on it.
+struct Sighting {
+    int node = -1;
+    int landmark = -1;
+    std::array<Eigen::Vector3d, 4> points_camera;  ///< centre +- one standard deviation along both axes
+    double sqrt_weight = 0;                        ///< of each point's distance, 1/metres
+};
+
+struct LandmarkOptions {
+    double min_extent_m =
+        0.25;                  ///< standard deviation along the shorter axis: smaller regions fix no rotation
+    double max_angle_deg = 8;  ///< between a region and its landmark
+    double max_distance_m = 0.06;  ///< RMS of the region's four points to its landmark
+    double max_gap_m = 0.5;        ///< between their boxes
+    double sigma_m = 0.01;         ///< of a point's distance, on top of the sensor's noise
+    DepthNoise noise;              ///< of the depth sensor
+};
+
+/// The landmarks of a graph and who saw them.
+class Landmarks {
+  public:
+    explicit Landmarks(const LandmarkOptions& options) : options_(options) {}
+
+    /// Takes the regions of a keyframe (camera frame) at its present pose: each large one is a sighting of
+    /// the landmark that it lies on, or founds one. A region that lies on several is left out. Returns the
+    /// largest whitened error of the new sightings.
+    double add(int node, const std::vector<PlanarRegion>& regions, const Pose& world_from_camera);
+
+    /// Merges landmarks that coincide by the same rules; call it after the poses moved.
+    void merge();
+
+    /// Sightings of landmarks that at least two keyframes share.
+    std::vector<Sighting> shared() const;
+    std::vector<Landmark>& landmarks() { return landmarks_; }
+    const std::vector<Landmark>& landmarks() const { return landmarks_; }
+
+  private:
+    struct Candidate {
+        Plane plane;
+        Box box;
+        std::array<Eigen::Vector3d, 4> points;
+    };
+    bool fits(const Candidate& region, const Landmark& landmark) const;
+    int standing(int landmark) const;
+
+    LandmarkOptions options_;
+    std::vector<Landmark> landmarks_;
+    std::vector<Sighting> sightings_;
+};
+
+/// Whitened distances of a sighting's points to the plane.
+Eigen::Vector4d sighting_error(const Sighting& sighting, const Pose& world_from_camera,
+                               const Plane& plane_world);
+
+}  // namespace planemap::graph

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "graph/landmarks.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "graph/optimisation.hpp"
+
+namespace planemap::graph {
+namespace {
+
+/// A flat rectangle as a camera at the given pose sees it.
+PlanarRegion rectangle(const Pose& world_from_camera, const Eigen::Vector3d& centre, const Eigen::Vector3d& u,
+                       const Eigen::Vector3d& v) {
+    PlanarRegion region;
+    std::vector<Eigen::Vector3d> points;
+    for (int i = -10; i <= 10; ++i) {
+        for (int j = -10; j <= 10; ++j) {
+            points.push_back(world_from_camera.inverse() * (centre + 0.1 * i * u + 0.1 * j * v));
+            region.moments.add(points.back());
+        }
+    }
+    region.plane = fit_plane(region.moments).plane;
+    region.box = bound(principal_axes(region.plane, region.moments), points);
+    return region;
+}
+
+const Eigen::Vector3d kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1);
+
+PlanarRegion floor_seen(const Pose& world_from_camera, double height = -1) {
+    return rectangle(world_from_camera, {0, 0, height}, 1.5 * kX, 1.0 * kY);
+}
+
+TEST(Landmarks, AFloorSeenAgainIsTheSameLandmark) {
+    Landmarks landmarks({});
+    for (int node = 0; node < 3; ++node) {
+        const Pose pose = make_pose({0.1 * node, 0, 0.01 * node}, Eigen::Quaterniond(1, 0.005 * node, 0, 0));
+        EXPECT_LT(landmarks.add(node, {floor_seen(Pose::Identity())}, pose), node == 0 ? 1e-9 : 10.0);
+    }
+    ASSERT_EQ(landmarks.landmarks().size(), 1u);
+    EXPECT_EQ(landmarks.shared().size(), 3u);
+}
+
+TEST(Landmarks, OtherPlanesAreOtherLandmarks) {
+    Landmarks landmarks({});
+    const Pose eye = Pose::Identity();
+    landmarks.add(0, {floor_seen(eye)}, eye);
+    landmarks.add(1, {floor_seen(eye, -1.1)}, eye);  // a step of 10 cm
+    landmarks.add(2, {rectangle(eye, {0, 0, 1}, 1.5 * kX, 1.0 * kY)},
+                  eye);  // the ceiling: faces the other way
+    landmarks.add(3, {rectangle(eye, {6, 0, -1}, 1.5 * kX, 1.0 * kY)},
+                  eye);  // level with the floor, elsewhere
+    landmarks.add(4, {rectangle(eye, {0, 2, 0}, 1.5 * kX, 1.0 * kZ)}, eye);    // a wall
+    landmarks.add(5, {rectangle(eye, {0, 2, 0.5}, 0.1 * kX, 0.1 * kZ)}, eye);  // too small
+    EXPECT_EQ(landmarks.landmarks().size(), 5u);
+    EXPECT_TRUE(landmarks.shared().empty());
+}
+
+TEST(Landmarks, ARegionThatFitsTwoIsLeftOut) {
+    Landmarks landmarks({});
+    const Pose eye = Pose::Identity();
+    landmarks.add(0, {floor_seen(eye, -1.0)}, eye);
+    landmarks.add(0, {floor_seen(eye, -1.08)}, eye);
+    landmarks.add(1, {floor_seen(eye, -1.04)}, eye);
+    EXPECT_EQ(landmarks.landmarks().size(), 2u);
+    EXPECT_TRUE(landmarks.shared().empty());
+}
+
+TEST(Landmarks, MergeJoinsWhatCoincidesAfterTheGraphMoved) {
+    Landmarks landmarks({});
+    const Pose eye = Pose::Identity();
+    landmarks.add(0, {floor_seen(eye)}, eye);
+    landmarks.add(1, {floor_seen(eye)}, make_pose({0, 0, 0.2}, Eigen::Quaterniond::Identity()));
+    ASSERT_EQ(landmarks.landmarks().size(), 2u);
+    landmarks.landmarks()[1].plane = landmarks.landmarks()[0].plane;
+    landmarks.merge();
+    EXPECT_EQ(landmarks.landmarks()[1].merged_into, 0);
+    EXPECT_EQ(landmarks.shared().size(), 2u);
+    for (const Sighting& sighting : landmarks.shared()) EXPECT_EQ(sighting.landmark, 0);
+}
+
+TEST(Landmarks, NothingComesOfRegionsWithoutAPlane) {
+    Landmarks landmarks({});
+    EXPECT_EQ(landmarks.add(0, {PlanarRegion{}}, Pose::Identity()), 0);
+    EXPECT_TRUE(landmarks.landmarks().empty());
+}
+
+/// A walk over a floor with noisy odometry: the shared floor holds height, roll and pitch.
+TEST(Landmarks, ASharedFloorStopsDrift) {
+    std::mt19937_64 random(7);
+    std::normal_distribution<double> noise(0, 0.01);
+    std::vector<Pose> truth{Pose::Identity()}, drifting{Pose::Identity()};
+    Pose odometry = Pose::Identity();
+    std::vector<PoseEdge> edges;
+    Landmarks landmarks({});
+    landmarks.add(0, {floor_seen(truth[0])}, truth[0]);
+    for (int node = 1; node < 30; ++node) {
+        Twist step = Twist::Zero(), error;
+        step[0] = 0.05;
+        for (int i = 0; i < 6; ++i) error[i] = noise(random);
+        truth.push_back(truth.back() * pose_from_twist(step));
+        const Pose measured = pose_from_twist(step) * pose_from_twist(error);
+        drifting.push_back(drifting.back() * measured);
+        odometry = odometry * measured;
+        edges.push_back({node - 1, node, measured, Matrix6d::Identity() / 0.01, false});
+        landmarks.add(node, {floor_seen(truth.back())}, drifting.back());
+        optimise(drifting, edges, 0, {}, &landmarks.landmarks(), landmarks.shared());
+        landmarks.merge();
+    }
+    const auto height_error = [&](const Pose& p) {
+        return std::abs((truth.back().inverse() * p).translation().z());
+    };
+    const auto tilt_error = [&](const Pose& p) {
+        return angle_between((truth.back().inverse() * p).linear() * kZ, kZ);
+    };
+    EXPECT_LT(height_error(drifting.back()), 0.03);
+    EXPECT_LT(tilt_error(drifting.back()), 0.02);
+    EXPECT_LT(height_error(drifting.back()) + tilt_error(drifting.back()),
+              0.5 * (height_error(odometry) + tilt_error(odometry)));
+    EXPECT_EQ(landmarks.landmarks().size(), 1u);
+}
+
+/// One wrong sighting among many right ones does not bend the graph.
+TEST(Landmarks, AWrongSightingIsLetGo) {
+    std::vector<Pose> poses(5, Pose::Identity());
+    std::vector<PoseEdge> edges;
+    Landmarks landmarks({});
+    for (int node = 0; node < 5; ++node) {
+        if (node > 0) edges.push_back({node - 1, node, Pose::Identity(), Matrix6d::Identity() / 0.01, false});
+        landmarks.add(node, {floor_seen(poses[static_cast<std::size_t>(node)])},
+                      poses[static_cast<std::size_t>(node)]);
+    }
+    std::vector<Sighting> sightings = landmarks.shared();
+    for (auto& p : sightings[2].points_camera) p.z() += 0.5;
+    optimise(poses, edges, 0, {}, &landmarks.landmarks(), sightings);
+    EXPECT_LT(poses[2].translation().norm(), 0.02);
+}
+
+}  // namespace
+}  // namespace planemap::graph
