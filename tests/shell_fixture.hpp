@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <memory>
 #include <vector>
 
@@ -16,26 +17,29 @@ namespace planemap::test {
 
 class ShellTest : public testing::Test {
   protected:
-    static constexpr int kWidth = 160, kHeight = 120;
+    static constexpr int kWidth = 320, kHeight = 240;
 
     static CameraInfo camera() {
         CameraInfo camera;
         camera.serial = "test";
-        camera.depth = camera.color = {kWidth, kHeight, 140, 140, 79.5, 59.5};
+        camera.depth = camera.color = {kWidth, kHeight, 280, 280, 159.5, 119.5};
         return camera;
     }
 
-    /// A wall at 2 m with a dotted texture, moved sideways by `shift` metres.
+    /// A wall at 2 m with squares of many shades, moved sideways by `shift` metres.
     static bot_core::images_t frame(std::int64_t utime, double shift = 0) {
         RgbImage color(kWidth, kHeight);
         for (int v = 0; v < kHeight; ++v) {
             for (int u = 0; u < kWidth; ++u) {
-                const double x = (u - 79.5) / 140 * 2 + shift, y = (v - 59.5) / 140 * 2;
+                // Turned, so that no corner falls on the pixel grid the same way as another.
+                const double right = (u - 159.5) / 280 * 2 + shift, down = (v - 119.5) / 280 * 2;
+                const double x = 0.955 * right - 0.296 * down, y = 0.296 * right + 0.955 * down;
                 auto cell = static_cast<std::uint64_t>((x + 50) / 0.2) << 32 |
                             static_cast<std::uint64_t>((y + 50) / 0.2);
                 cell = (cell ^ cell >> 31) * 0x9e3779b97f4a7c15u;
                 cell = (cell ^ cell >> 29) * 0xbf58476d1ce4e5b9u;
-                const auto level = static_cast<std::uint8_t>((cell >> 40) % 200 + 30);
+                const bool gap = std::fmod(x + 50, 0.2) < 0.07 || std::fmod(y + 50, 0.2) < 0.07;
+                const auto level = static_cast<std::uint8_t>(gap ? 20 : (cell >> 40) % 160 + 80);
                 color(u, v) = {level, level, level};
             }
         }

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <limits>
 #include <opencv2/features2d.hpp>
+#include <opencv2/imgproc.hpp>
 
 namespace planemap {
 namespace {
@@ -80,7 +81,16 @@ std::vector<cv::Point2f> select_corners(const GrayImage& gray, const DepthImage&
     if (static_cast<int>(chosen.size()) > options.max_corners / 2) return chosen;
     corners.clear();
     cv::FAST(as_mat(gray), corners, std::max(2, options.threshold / 3), true);
-    return best_of_cells(std::move(corners), depth, info, options);
+    chosen = best_of_cells(std::move(corners), depth, info, options);
+    if (static_cast<int>(chosen.size()) > options.max_corners / 6) return chosen;
+    // Crisp edges (screens, chequers) give FAST equal scores side by side, which its suppression drops all.
+    std::vector<cv::Point2f> strong;
+    cv::goodFeaturesToTrack(as_mat(gray), strong, options.max_corners, 0.02, options.cell_px / 2.0);
+    corners.clear();
+    for (std::size_t i = 0; i < strong.size(); ++i)
+        corners.emplace_back(strong[i], 7.0f, -1.0f, static_cast<float>(strong.size() - i));
+    std::vector<cv::Point2f> others = best_of_cells(std::move(corners), depth, info, options);
+    return others.size() > chosen.size() ? others : chosen;
 }
 
 std::vector<Feature> describe(const GrayImage& gray, const DepthImage& depth, const CameraInfo& info,

@@ -34,7 +34,7 @@ struct OdometryOptions {
     int surface_stride_px = 8;     ///< spacing of the depth samples of a frame
     double surface_gate_m = 0.04;  ///< samples further from the surface than this (and 3 sigma) are left out
     double surface_weight = 0.5;   ///< information of one sample relative to an independent one
-    double plane_points = 10;      ///< independent points that a plane seen again counts as, at most
+    double plane_points = 3;       ///< independent points that a plane seen again counts as, at most
     double min_surface_share = 0.35;  ///< of the samples, for a pose that rests on depth alone
 
     double color_jitter_s = 0.003;       ///< sigma of the colour image's time against its stamp
