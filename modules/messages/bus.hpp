@@ -62,14 +62,16 @@ class Bus {
     /// Handles until nothing waits; for memq://.
     void drain();
 
-    /// Handlers that threw since the start.
+    /// Counts and logs (once per burst) a message that was dropped; for shells that find out after their
+    /// handler returned.
+    void report(std::string_view channel, const char* reason);
+    /// Messages dropped so, and handlers that threw, since the start.
     std::int64_t handler_errors() const { return handler_errors_; }
 
   private:
     struct Subscriber;
     static void dispatch(const lcm::ReceiveBuffer* buffer, const std::string& channel,
                          Subscriber* subscriber);
-    void report(std::string_view channel, const char* reason);
 
     std::string url_;
     std::unique_ptr<lcm::LCM> lcm_;

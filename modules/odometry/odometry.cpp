@@ -20,9 +20,8 @@ constexpr int kRelocalisedInliers = 20;  // matched features that make a place k
 constexpr int kMinSurfaceCells = 40;     // for a keyframe without texture
 constexpr double kStillPredicted = 0.3;  // seconds without a pose for which the prediction means something
 constexpr double kLongestGap = 1.5;      // seconds without a pose after which depth alone is not followed
-const Eigen::Vector3d kTurns[] = {{0, 0.2, 0}, {0, -0.2, 0}, {0.2, 0, 0}, {-0.2, 0, 0}};  // radians
-constexpr double kReach = 0.3;      // metres and radians that a camera may always have moved
-constexpr double kSureShare = 0.9;  // of the visible surface that must fit where nothing was predicted
+constexpr double kReach = 0.3;           // metres and radians that a camera may always have moved
+constexpr double kSureShare = 0.9;       // of the visible surface that must fit where nothing was predicted
 
 double seconds(std::int64_t microseconds) {
     return static_cast<double>(microseconds) * 1e-6;
@@ -52,16 +51,6 @@ void put_on_regions(std::vector<Feature>& features, const PreparedFrame& view) {
         const Plane& plane = view.regions[static_cast<std::size_t>(feature.region)].plane;
         feature.point = regularised(plane, point).cast<float>();
     }
-}
-
-/// The guess with the camera swung about the middle of what it sees.
-Guess turned(const Guess& guess, const Eigen::Vector3d& turn, const std::vector<SurfaceSample>& samples) {
-    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-    for (const SurfaceSample& sample : samples) middle += sample.point / static_cast<double>(samples.size());
-    Guess result = guess;
-    result.camera_from_keyframe = Eigen::Translation3d(middle) * so3_exp(turn) *
-                                  Eigen::Translation3d(-middle) * guess.camera_from_keyframe;
-    return result;
 }
 
 /// A matched descriptor; ORB is coarser than flow, in the image and in depth.
@@ -261,8 +250,7 @@ std::optional<Track> Odometry::State::second_chances(const PreparedFrame& view, 
     return track_points(options_, current(), view, better, search);
 }
 
-/// Depth alone. After a gap also from where the camera was, from where its motion would have led it, and
-/// from turns about what it sees; the start that explains most of what is visible wins.
+/// Depth alone: from the guess, from where the camera was, and from where its motion would have led it.
 std::optional<Track> Odometry::State::track_geometry(const PreparedFrame& view, const Guess& guess) const {
     const double elapsed = seconds(view.utime - pose_utime_);
     if (elapsed > kLongestGap) return std::nullopt;
@@ -270,16 +258,12 @@ std::optional<Track> Odometry::State::track_geometry(const PreparedFrame& view, 
     const Guess still = predict(view.utime, current(), false);
     Guess carried_on = still;
     carried_on.camera_from_keyframe = pose_from_twist(elapsed * velocity_) * still.camera_from_keyframe;
-    std::vector<Guess> starts{guess};
-    if (!fresh) {
-        starts.insert(starts.end(), {still, carried_on});
-        for (const Eigen::Vector3d& turn : kTurns) starts.push_back(turned(still, turn, view.samples));
-    }
     std::optional<Track> best;
-    for (const Guess& start : starts) {
+    for (const Guess& start : {guess, still, carried_on}) {
         std::optional<Track> track = track_surface(options_, current(), view, start);
         if (!track || (!fresh && (track->degenerate || track->inliers < kSureShare * track->tried))) continue;
         if (!best || track->inliers * best->tried > best->inliers * track->tried) best = std::move(track);
+        if (fresh) break;
     }
     return best;
 }
@@ -415,13 +399,13 @@ std::optional<std::size_t> Odometry::State::other_keyframe(const PreparedFrame& 
                                                            Track& track) const {
     if (view.pyramid.empty()) return std::nullopt;
     std::optional<std::size_t> best;
-    double best_share = 0.75;
+    double best_share = 0.6;
     const Pose odom_from_camera = located.odom_from_camera();
     for (std::size_t i = 0; i < local_.size(); ++i) {
         if (i == current_ || local_[i].points.empty()) continue;
         const Pose camera_from_keyframe = odom_from_camera.inverse() * local_[i].odom_from_keyframe;
-        if (camera_from_keyframe.translation().norm() > 0.6 * options_.max_translation_m ||
-            rotation_angle(camera_from_keyframe) > 0.6 * options_.max_rotation_rad)
+        if (camera_from_keyframe.translation().norm() > 0.8 * options_.max_translation_m ||
+            rotation_angle(camera_from_keyframe) > 0.8 * options_.max_rotation_rad)
             continue;
         int visible = 0;
         for (const TrackPoint& point : local_[i].points) {
@@ -443,7 +427,7 @@ std::optional<std::size_t> Odometry::State::other_keyframe(const PreparedFrame& 
     for (const TrackPoint& point : keyframe.points) pixels.push_back(point.pixel);
     FlowSearch search{&keyframe.pyramid, &pixels, nullptr, options_.flow_levels};
     std::optional<Track> found = track_points(options_, keyframe, view, guess, search);
-    const double needed = (options_.min_tracked_share + 0.1) * static_cast<double>(keyframe.points.size());
+    const double needed = (options_.min_tracked_share + -0.1) * static_cast<double>(keyframe.points.size());
     if (!found || found->degenerate || found->inliers < needed) return std::nullopt;
     track = std::move(*found);
     return best;

@@ -64,7 +64,15 @@ void OdometryShell::process(const Waiting& input) {
     OdometryFrame in;
     in.utime = frame.utime();
     in.camera = &frame.camera();
-    in.depth = &frame.depth_in_color();
+    try {
+        in.depth = &frame.depth_in_color();
+    } catch (
+        const MessageError& error) {  // here, not in a handler's guard: other frames wait behind this one
+        status_.decode_error();
+        status_.set_text(error.what());
+        bus_.report(channels::kFrame, error.what());
+        return;
+    }
     try {
         in.gray = frame.gray();
         in.color_utime = frame.color_utime();

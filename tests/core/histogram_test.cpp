@@ -29,7 +29,8 @@ TEST(Histogram, QuantilesAreRightWithinOnePercent) {
 TEST(Histogram, ExtremesAreCounted) {
     Histogram histogram;
     EXPECT_EQ(histogram.median(), 0);
-    for (const double value : {0.0, -1.0, 1e300, std::numeric_limits<double>::infinity()}) histogram.add(value);
+    for (const double value : {0.0, -1.0, 1e300, std::numeric_limits<double>::infinity()})
+        histogram.add(value);
     histogram.add(std::nan(""));
     EXPECT_EQ(histogram.count(), 4);
     EXPECT_LT(histogram.quantile(0), 1.1e-4);

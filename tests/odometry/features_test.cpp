@@ -79,7 +79,7 @@ TEST(Descriptors, AFrameMatchesItself) {
     EXPECT_GT(matches.size(), features.size() / 2);
     for (const auto& [i, j] : matches)
         EXPECT_EQ(bit_difference(features[static_cast<std::size_t>(i)].descriptor,
-                                   features[static_cast<std::size_t>(j)].descriptor),
+                                 features[static_cast<std::size_t>(j)].descriptor),
                   0);
     EXPECT_TRUE(match_descriptors({}, features, 64).empty());
     EXPECT_TRUE(match_descriptors(features, {}, 64).empty());

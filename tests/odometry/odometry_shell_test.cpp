@@ -30,7 +30,8 @@ TEST_F(OdometryShellTest, TracksAmongCorruptMessages) {
     ASSERT_FALSE(keyframes->empty());
     EXPECT_EQ(keyframes->front().id, 0);
     const OdometryEstimate last = from_message(estimates->back());
-    EXPECT_EQ(last.status, TrackingStatus::kTracked) << last.inliers << " of " << last.features << " features";
+    EXPECT_EQ(last.status, TrackingStatus::kTracked)
+        << last.inliers << " of " << last.features << " features";
     EXPECT_NEAR(last.odom_from_camera.translation().x(), 0.09, 0.02);
     EXPECT_EQ(shell.status().decode_error_count(), 20 * kCorrupt);
 }
@@ -46,6 +47,22 @@ TEST_F(OdometryShellTest, AFrameWaitsForItsRegionsButNotForEver) {
     bus_.drain();
     EXPECT_EQ(estimates->size(), 6u);
     for (std::size_t i = 1; i < 6; ++i) EXPECT_GT((*estimates)[i].utime, (*estimates)[i - 1].utime);
+}
+
+TEST_F(OdometryShellTest, AFrameWithBrokenDepthCostsItselfOnly) {
+    OdometryShell shell(bus_, std::make_shared<FrameDecoder>(bus_), {});
+    const auto estimates = collect<odometry_t>(channels::kOdometry);
+    publish_camera();
+    for (int i = 0; i < 6; ++i) {
+        bot_core::images_t images = frame(1000000 + 33333 * i);
+        if (i % 2 == 1) images.images[1].pixelformat = 0;  // found out only when odometry asks for the depth
+        bus_.publish(channels::kFrame, images);
+    }
+    bus_.drain();
+    EXPECT_NO_THROW(shell.finish());
+    bus_.drain();
+    EXPECT_EQ(estimates->size(), 3u);
+    EXPECT_EQ(shell.status().decode_error_count(), 3);
 }
 
 TEST_F(OdometryShellTest, RegionsMayComeFirst) {

@@ -133,6 +133,18 @@ TEST_F(RunTest, ALogGivesTheMapOfItsFramesAndACutLogWhatIsWhole) {
     EXPECT_NE(cut.err.find("cut.lcmlog is cut short"), std::string::npos) << cut.err;
     EXPECT_NEAR(report("cut").at("frames").get<int>(), 15, 3);
 
+    // Spoilt at the end, where frames still wait for their regions, and in the only camera description.
+    std::string ends = log;
+    for (std::size_t i = ends.size() - 3000; i < ends.size(); ++i) ends[i] = static_cast<char>(i);
+    const std::size_t camera = ends.find("PLANEMAP_CAMERA_INFO") + 60;
+    for (std::size_t i = camera; i < camera + 20; ++i) ends[i] = static_cast<char>(0xff);
+    write_file(folder_ / "ends.lcmlog", ends);
+    expect_error("planemap-run", path("ends.lcmlog") + " --output " + path("ends"), "no camera_info_t");
+    write_file(folder_ / "twice.lcmlog", ends + log);
+    ASSERT_EQ(run("planemap-run", path("twice.lcmlog") + " --no-octomap --output " + path("twice")).exit_code,
+              0);
+    EXPECT_GE(report("twice").at("tracked").get<int>(), 50);
+
     // Bytes spoilt in the middle of a frame's images: that frame is counted, the others are mapped.
     std::string spoilt = log;
     for (std::size_t i = log.size() / 2; i < log.size() / 2 + 400; ++i) spoilt[i] = static_cast<char>(0xff);

@@ -7,6 +7,8 @@
 #include <stdexcept>
 
 #include "messages/channels.hpp"
+#include "messages/convert.hpp"
+#include "messages/decode.hpp"
 #include "messages/log.hpp"
 #include "sensor/sensor_shell.hpp"
 #include "sensor/simulator/simulated_source.hpp"
@@ -70,6 +72,16 @@ std::uint64_t fingerprint(const LogEvent& event) {
     return value;
 }
 
+/// True for a camera description that can be used: one that is corrupt may be followed by a good one.
+bool describes(const LogEvent& event) {
+    try {
+        from_message(decode<camera_info_t>(event.bytes));
+        return true;
+    } catch (const MessageError&) {
+        return false;
+    }
+}
+
 /// An LCM log: images_t from the first channel that has them, the camera from the first camera_info_t.
 class LogInput : public Input {
   public:
@@ -81,7 +93,8 @@ class LogInput : public Input {
             const std::uint64_t type = fingerprint(event);
             if (channel_.empty() && type == static_cast<std::uint64_t>(bot_core::images_t::getHash()))
                 channel_ = event.channel;
-            if (!described && type == static_cast<std::uint64_t>(camera_info_t::getHash())) {
+            if (!described && type == static_cast<std::uint64_t>(camera_info_t::getHash()) &&
+                describes(event)) {
                 described = true;
                 if (!has_camera) bus_.publish_bytes(channels::kCameraInfo, event.bytes);
             }
