@@ -205,6 +205,31 @@ TEST_F(RunTest, BadInputIsOneClearLine) {
     expect_error("planemap-odometry", "--lcm-url nonsense://x", "nonsense://x");
 }
 
+TEST_F(RunTest, DepthThatIsAllZeroIsSaid) {
+    bot_core::images_t images;
+    images.image_types = {bot_core::images_t::DEPTH_MM_ZIPPED};
+    images.n_images = 1;
+    CameraInfo camera;
+    camera.depth = camera.color = {64, 48, 50, 50, 31.5, 23.5};
+    const auto event = [](const char* channel, std::int64_t utime, const auto& message) {
+        LogEvent e{0, utime, channel,
+                   std::vector<std::uint8_t>(static_cast<std::size_t>(message.getEncodedSize()))};
+        message.encode(e.bytes.data(), 0, message.getEncodedSize());
+        return e;
+    };
+    LogWriter log(folder_ / "dark.lcmlog");
+    log.write(event(channels::kCameraInfo, 0, to_message(camera, 0, 0)));
+    for (int i = 0; i < 5; ++i) {
+        images.utime = 33333 * i;
+        images.images = {depth_image_message(DepthImage(64, 48), images.utime, DepthEncoding::kZipped)};
+        log.write(event(channels::kFrame, images.utime, images));
+    }
+    log.close();
+    expect_error("planemap-run", path("dark.lcmlog") + " --output " + path("out"),
+                 "none of its 5 frames could be tracked");
+    EXPECT_EQ(report("out").at("lost"), 5) << "the report is written all the same";
+}
+
 /// Real data, physical bounds.
 TEST_F(RunTest, RedkitchenIsTrackedAndItsMapIsSmall) {
     PLANEMAP_NEEDS_DATA("redkitchen");

@@ -85,8 +85,12 @@ int run(RunOptions options) {
         "\nIn %s: trajectory.txt planes.json planes.ply plane_map.lcmlog%s map.svg overhead.svg report.json "
         "report.md\n",
         options.output.c_str(), pipeline.octomap() != nullptr ? " octomap.bt" : "");
-    if (pipeline.estimates().empty()) {
+    if (pipeline.estimates().empty())
         throw std::runtime_error(options.input + ": no frame of it could be used");
+    if (report.at("tracked") == 0) {
+        throw std::runtime_error(
+            options.input + ": none of its " + std::to_string(input->frames()) +
+            " frames could be tracked: no depth (all zero, or out of range) or nothing to follow in them");
     }
     return 0;
 }
