@@ -27,7 +27,7 @@ class RgbdPlaneFinder : public Finder {
         const cv::Matx33f intrinsics(static_cast<float>(c.fx), 0, static_cast<float>(c.cx), 0,
                                      static_cast<float>(c.fy), static_cast<float>(c.cy), 0, 0, 1);
         const cv::rgbd::RgbdNormals normals(depth.height, depth.width, CV_32F, intrinsics, 5,
-                                            cv::rgbd::RgbdNormals::RGBD_NORMALS_METHOD_LINEMOD);
+                                            cv::rgbd::RgbdNormals::RGBD_NORMALS_METHOD_FALS);
         cv::Mat normal_image;
         normals(points_, normal_image);
         planes_(points_, normal_image, mask_, coefficients_);
