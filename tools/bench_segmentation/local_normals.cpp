@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kReach = 8;  // the window is 2 kReach + 1 pixels wide
 constexpr double kLeastReadings = 145;
-constexpr double kSigmas = 1.5, kLeastRms_m = 0.0015;
+constexpr double kSigmas = 3;
 
 /// Sums over the readings of one column within the window's rows; w = 1/z, v = row.
 struct Column {
@@ -54,7 +54,7 @@ struct Window {
         const double a = (suw * svv - svw * suv) / determinant, b = (svw * suu - suw * suv) / determinant;
         const double z = 1 / mw;
         const double rms = z * z * std::sqrt(std::max(0.0, sww - a * suw - b * svw) / n);
-        if (rms > std::max(kLeastRms_m, kSigmas * DepthNoise{}.sigma(z))) return Eigen::Vector3f::Zero();
+        if (rms > kSigmas * DepthNoise{}.sigma(z)) return Eigen::Vector3f::Zero();
         const double at_axis = mw + a * (camera.cx - mu) + b * (camera.cy - mv);
         return -Eigen::Vector3d(a * camera.fx, b * camera.fy, at_axis).normalized().cast<float>();
     }
