@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <ctime>
 #include <sstream>
 #include <stdexcept>
 
 #include "bench_segmentation/local_normals.hpp"
 #include "bench_segmentation/metrics.hpp"
 #include "bench_segmentation/peers.hpp"
+#include "segment/thread_time.hpp"
 #include "segmentation/cells.hpp"
 #include "segmentation/ransac.hpp"
 
@@ -177,12 +177,6 @@ const Segmentation& Method::result(const DepthImage& depth, const CameraInfo& ca
     if (step_ > 1)
         segmentation_.labels = spread(segmentation_.labels, segmentation_.regions, depth, camera, step_);
     return segmentation_;
-}
-
-double thread_ms() {
-    timespec time{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-    return static_cast<double>(time.tv_sec) * 1e3 + static_cast<double>(time.tv_nsec) * 1e-6;
 }
 
 }  // namespace planemap::bench

@@ -68,7 +68,4 @@ class Method {
     Segmentation segmentation_;
 };
 
-/// CPU time of this thread, milliseconds.
-double thread_ms();
-
 }  // namespace planemap::bench
