@@ -8,7 +8,7 @@ find_package(spdlog REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(Threads REQUIRED)
-find_package(OpenCV REQUIRED COMPONENTS core imgproc features2d video calib3d)
+find_package(OpenCV REQUIRED COMPONENTS core imgproc features2d video calib3d rgbd)
 
 # find_library_target(TARGET HEADER LIBRARY): an imported target for a library without a CMake config.
 function(find_library_target target header library)

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// planemap-bench-segmentation: methods that find planes in depth images, on the same frames.
+#include <cstdio>
+#include <cstdlib>
+#include <iostream>
+
+#include "bench_segmentation/benchmark.hpp"
+#include "bench_segmentation/build_info.hpp"
+#include "bench_segmentation/table1.hpp"
+#include "core/files.hpp"
+#include "messages/process.hpp"
+
+namespace planemap::bench {
+namespace {
+
+constexpr const char* kProgram = "planemap-bench-segmentation";
+
+struct Arguments {
+    std::string sequences, methods;
+    BenchmarkOptions benchmark;
+    std::filesystem::path json;
+    bool table1 = false;
+};
+
+/// Folder of the sample data, as the tests find it.
+std::filesystem::path default_data_folder() {
+    if (const char* root = std::getenv("PLANEMAP_DATA")) return root;
+    return std::filesystem::path(PLANEMAP_SOURCE) / ".." / "shared" / "data";
+}
+
+template <typename Infos>
+std::string names_of(const Infos& infos) {
+    std::string list;
+    for (const auto& info : infos) list += (list.empty() ? "" : ",") + info.name;
+    return list;
+}
+
+/// One line each: name and what it is.
+template <typename Infos>
+std::string described(const Infos& infos) {
+    std::string text;
+    for (const auto& info : infos)
+        text += "  " + info.name + std::string(20 - info.name.size(), ' ') + info.what + "\n";
+    return text;
+}
+
+std::string description() {
+    return "Methods that find planes in depth images, on the same frames, one thread.\n"
+           "Examples:\n  " +
+           std::string(kProgram) +
+           " --json rows.json                       everything, about 3 minutes\n"
+           "  planemap-bench-segmentation --sequences redkitchen --methods cells,ransac/4\n"
+           "  planemap-bench-segmentation --table1                                the paper's Table 1\n"
+           "  planemap-bench-segmentation --sequences sim:office --methods cells/1 --overlays out/overlays\n"
+           "Sequences:\n" +
+           described(known_sequences()) + "Methods (NAME/N: at subsampling N only):\n" +
+           described(known_methods()) +
+           "Columns:\n"
+           "  ms, p95   median and 95th percentile over the frames of the thread's CPU time; the median of\n"
+           "            three runs a frame, one run where it takes over 20 ms. Decimation is in it, "
+           "spreading\n"
+           "            labels back to the full image is not; of ransac it is, with outlines (the module "
+           "does\n"
+           "            all). Point clouds and normals of the peers are in it.\n"
+           "  planes    regions a frame, of any size\n"
+           "  expl%     readings that carry a label and lie within max(1.5 cm, 3 sigma) of its plane, with\n"
+           "            sigma(z) = 0.0012 + 0.0019 (z - 0.4)^2 m\n"
+           "  coh%      of the locally planar pixels (17 x 17 pixels around fit a plane within 3 sigma "
+           "RMS):\n"
+           "            explained by a plane within 20 deg of the local normal\n"
+           "  off30%    of the locally planar pixels with a label: its plane is more than 30 deg off\n"
+           "  rms mm    of the labelled pixels to their planes\n"
+           "  rec prec  true and found regions of at least 1000 pixels (at 640 x 480) matched at IoU 0.8\n"
+           "  corr over under miss noise   SegComp's instances at 80 % (Hoover et al. 1996)\n"
+           "  deg mm    median error of the matched regions' normals, and distances at their centroids\n"
+           "  spread    of the five largest world planes' normals and distances from frame to frame under\n"
+           "            the true poses: standard deviation, median of the five\n"
+           "Under subsampling, labels spread to the nearest pixels that lie within max(1.5 cm, 3 sigma).";
+}
+
+void add_flags(Flags& flags, Arguments& arguments) {
+    BenchmarkOptions& options = arguments.benchmark;
+    flags.add("sequences", arguments.sequences, "comma-separated names, see above");
+    flags.add("methods", arguments.methods, "comma-separated names, see above");
+    flags.add("frames", options.frames, "frames a sequence, evenly spread; 0: each sequence's own, 3 to 100");
+    flags.add("slow-frames", options.slow_frames, "at most this many frames for a method that is slow");
+    flags.add("data", options.data, "folder of the recordings; default: $PLANEMAP_DATA, or ../shared/data");
+    flags.add("table1", arguments.table1, "the paper's Table 1 instead: every method at 1.5, 2.5 and 3.5 m");
+    flags.add("json", arguments.json, "write the rows to this file, or to - (standard output)");
+    flags.add("overlays", options.overlays, "draw what was found: FOLDER/SEQUENCE/FRAME-METHOD.png");
+    flags.add("overlay-every", options.overlay_every, "a picture of every n-th frame that is run");
+    flags.add("q,quiet", options.quiet, "no progress on stderr");
+}
+
+nlohmann::ordered_json run_sequences(const Arguments& arguments) {
+    const std::vector<SequenceInfo> sequences = parse_sequences(arguments.sequences);
+    const std::vector<MethodName> methods = parse_methods(arguments.methods);
+    nlohmann::ordered_json json = nlohmann::ordered_json::array();
+    Benchmark benchmark(arguments.benchmark);
+    for (const SequenceInfo& sequence : sequences) {
+        const std::vector<Row> rows = benchmark.run(sequence, methods);
+        if (rows.empty()) continue;
+        std::printf("\n%s: %s\n%s", sequence.name.c_str(), sequence.what.c_str(), table_heading().c_str());
+        for (const Row& row : rows) {
+            std::fputs(table_line(row).c_str(), stdout);
+            json.push_back(to_json(row));
+        }
+        std::fflush(stdout);
+    }
+    return json;
+}
+
+/// Table 1 has each method at 1, 2 and 4 unless --methods says otherwise.
+std::vector<MethodName> table1_methods(const std::string& list, bool is_default) {
+    if (!is_default) return parse_methods(list);
+    std::vector<MethodName> methods;
+    for (const MethodInfo& info : known_methods()) {
+        for (const int step : {1, 2, 4}) methods.push_back({info.name, step});
+    }
+    return methods;
+}
+
+int run(const Arguments& arguments) {
+    std::fputs(build_info().c_str(), stdout);
+    const bool all_methods = arguments.methods == names_of(known_methods());
+    const nlohmann::ordered_json json = arguments.table1
+                                            ? print_table1(table1_methods(arguments.methods, all_methods))
+                                            : run_sequences(arguments);
+    const std::string text = json.dump(1) + "\n";
+    if (arguments.json == "-") {
+        std::cout << text;
+    } else if (!arguments.json.empty()) {
+        write_file(arguments.json, text);
+    }
+    return 0;
+}
+
+}  // namespace
+}  // namespace planemap::bench
+
+int main(int argc, char** argv) {
+    using namespace planemap::bench;
+    Arguments arguments;
+    arguments.sequences = names_of(known_sequences());
+    arguments.methods = names_of(known_methods());
+    arguments.benchmark.data = default_data_folder();
+    planemap::Flags flags(kProgram, description());
+    add_flags(flags, arguments);
+    const int parsed = flags.parse(argc, argv);
+    if (parsed >= 0) return parsed;
+    return planemap::run_main(kProgram, [&] { return run(arguments); });
+}

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench_segmentation/methods.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+#include "bench_segmentation/local_normals.hpp"
+#include "bench_segmentation/metrics.hpp"
+#include "bench_segmentation/peers.hpp"
+#include "segment/thread_time.hpp"
+#include "segmentation/cells.hpp"
+#include "segmentation/ransac.hpp"
+
+namespace planemap::bench {
+
+namespace {
+
+constexpr std::uint64_t kSeed = 1;
+constexpr int kMaxSubsampling = 16;
+
+/// The project's own interface as a Finder.
+class SegmenterFinder : public Finder {
+  public:
+    explicit SegmenterFinder(std::unique_ptr<Segmenter> segmenter) : segmenter_(std::move(segmenter)) {}
+
+    void find(const DepthImage& depth, const CameraInfo& camera) override {
+        segmenter_->segment(depth, camera, segmentation_);
+    }
+    void result(Segmentation& out) override { out = segmentation_; }
+
+  private:
+    std::unique_ptr<Segmenter> segmenter_;
+    Segmentation segmentation_;
+};
+
+/// The paper's settings.
+RansacOptions ransac_options(int subsampling) {
+    RansacOptions options;
+    options.subsampling = subsampling;
+    options.max_iterations = 1000;
+    options.max_planes = 3;
+    return options;
+}
+
+/// Does its own subsampling.
+bool is_ransac(const std::string& name) {
+    return name.starts_with("ransac");
+}
+
+std::unique_ptr<Finder> make_finder(const MethodName& method) {
+    const int step = method.subsampling;
+    const auto ours = [](std::unique_ptr<Segmenter> segmenter) {
+        return std::make_unique<SegmenterFinder>(std::move(segmenter));
+    };
+    if (method.name == "cells") return ours(make_cell_segmenter({}));
+    if (method.name == "ransac") return ours(make_ransac_segmenter(ransac_options(step), kSeed));
+    if (method.name == "ransac-debian")
+        return ours(make_debian_ransac_segmenter(ransac_options(step), kSeed));
+    if (method.name == "organised") return make_organised(std::max(3, 1000 / (step * step)));
+    const int block_px = std::max(4, 40 / step);
+    if (method.name == "rgbdplane") return make_rgbd_plane(block_px, false);
+    if (method.name == "rgbdplane-normals") return make_rgbd_plane(block_px, true);
+    throw std::invalid_argument("no method \"" + method.name + "\"");
+}
+
+std::string names_of_known() {
+    std::string names;
+    for (const MethodInfo& info : known_methods()) names += (names.empty() ? "" : ", ") + info.name;
+    return names;
+}
+
+void append(const std::string& word, std::vector<MethodName>& methods) {
+    const auto slash = word.find('/');
+    const std::string name = word.substr(0, slash);
+    const auto info = std::find_if(known_methods().begin(), known_methods().end(),
+                                   [&](const MethodInfo& known) { return known.name == name; });
+    if (info == known_methods().end()) {
+        throw std::invalid_argument("methods: there is no \"" + name + "\", only " + names_of_known());
+    }
+    if (slash == std::string::npos) {
+        for (const int step : info->subsamplings) methods.push_back({name, step});
+        return;
+    }
+    int step = 0;
+    const char* end = word.data() + word.size();
+    const auto [rest, error] = std::from_chars(word.data() + slash + 1, end, step);
+    if (error != std::errc{} || rest != end || step < 1 || step > kMaxSubsampling) {
+        throw std::invalid_argument("methods: \"" + word +
+                                    "\" must be NAME/N with a subsampling N from 1 to " +
+                                    std::to_string(kMaxSubsampling));
+    }
+    methods.push_back({name, step});
+}
+
+}  // namespace
+
+const std::vector<MethodInfo>& known_methods() {
+    static const std::vector<MethodInfo> methods{
+        {"cells", "the project's default method", {1, 2, 4}, {}},
+        {"ransac", "the paper's: PCL's RANSAC, 1000 iterations, 3 planes", {1, 2, 4}, {1, 2}},
+        {"ransac-debian", "the same with Debian's build of PCL's templates", {4}, {1, 2, 4}},
+        {"organised", "PCL's organised multi-plane segmentation, 3D-gradient normals", {1}, {1}},
+        {"rgbdplane", "OpenCV's RgbdPlane without normals", {4}, {1, 2}},
+        {"rgbdplane-normals", "OpenCV's RgbdPlane with LINEMOD normals", {4}, {1, 2}},
+    };
+    return methods;
+}
+
+std::vector<MethodName> parse_methods(const std::string& list) {
+    std::vector<MethodName> methods;
+    std::istringstream words(list);
+    for (std::string word; std::getline(words, word, ',');) append(word, methods);
+    if (methods.empty()) throw std::invalid_argument("methods: none given; there are " + names_of_known());
+    return methods;
+}
+
+DepthImage decimated(const DepthImage& depth, int step) {
+    DepthImage out((depth.width + step - 1) / step, (depth.height + step - 1) / step);
+    for (int v = 0; v < out.height; ++v) {
+        const std::uint16_t* from = depth.row(v * step);
+        std::uint16_t* to = out.row(v);
+        for (int u = 0; u < out.width; ++u) to[u] = from[u * step];
+    }
+    return out;
+}
+
+CameraInfo decimated(const CameraInfo& camera, int step) {
+    const auto scaled = [&](const PinholeCamera& c) {
+        return PinholeCamera{(c.width + step - 1) / step,
+                             (c.height + step - 1) / step,
+                             c.fx / step,
+                             c.fy / step,
+                             c.cx / step,
+                             c.cy / step};
+    };
+    CameraInfo out = camera;
+    out.depth = scaled(camera.depth);
+    if (camera.registered) out.color = scaled(camera.color);
+    return out;
+}
+
+Image<std::uint16_t> spread(const Image<std::uint16_t>& labels, const std::vector<PlanarRegion>& regions,
+                            const DepthImage& depth, const CameraInfo& camera, int step) {
+    Image<std::uint16_t> out(depth.width, depth.height);
+    for (int v = 0; v < depth.height; ++v) {
+        const std::uint16_t* from = labels.row(std::min((v + step / 2) / step, labels.height - 1));
+        for (int u = 0; u < depth.width; ++u) {
+            const std::uint16_t label = from[std::min((u + step / 2) / step, labels.width - 1)];
+            if (label == 0 || !is_trusted(depth(u, v), camera)) continue;
+            const double z = camera.metres(depth(u, v));
+            const Plane& plane = regions[label - 1u].plane;
+            if (std::abs(plane.signed_distance(camera.depth.unproject(u, v, z))) <= tolerance(z))
+                out(u, v) = label;
+        }
+    }
+    return out;
+}
+
+Method::Method(const MethodName& name)
+    : finder_(make_finder(name)), step_(is_ransac(name.name) ? 1 : name.subsampling) {}
+
+double Method::run(const DepthImage& depth, const CameraInfo& camera) {
+    const double start = thread_ms();
+    if (step_ == 1) {
+        finder_->find(depth, camera);
+    } else {
+        finder_->find(decimated(depth, step_), decimated(camera, step_));
+    }
+    return thread_ms() - start;
+}
+
+const Segmentation& Method::result(const DepthImage& depth, const CameraInfo& camera) {
+    finder_->result(segmentation_);
+    if (step_ > 1)
+        segmentation_.labels = spread(segmentation_.labels, segmentation_.regions, depth, camera, step_);
+    return segmentation_;
+}
+
+}  // namespace planemap::bench

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The methods that are compared.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "segmentation/segmenter.hpp"
+
+namespace planemap::bench {
+
+/// Finds planes in two steps, so that only the first is timed.
+class Finder {
+  public:
+    virtual ~Finder() = default;
+    /// All the work a user of the method has to wait for: from the depth image to planes and labels in the
+    /// method's own form.
+    virtual void find(const DepthImage& depth, const CameraInfo& camera) = 0;
+    /// The planes and labels of the last find() in ours. Of the regions only `plane` and what the method
+    /// itself gives are set.
+    virtual void result(Segmentation& out) = 0;
+};
+
+/// A method at one subsampling.
+struct MethodName {
+    std::string name;
+    int subsampling = 1;
+    friend bool operator==(const MethodName&, const MethodName&) = default;
+};
+
+/// What there is to know of a method.
+struct MethodInfo {
+    std::string name;
+    std::string what;                    ///< one line for --help and the header
+    std::vector<int> subsamplings;       ///< run by default
+    std::vector<int> slow_subsamplings;  ///< of these: on fewer frames
+};
+const std::vector<MethodInfo>& known_methods();
+
+/// Reads "cells,ransac/4": names, each with one subsampling from 1 to 16 or with the method's own. Throws
+/// std::invalid_argument that names what is wrong and lists what there is.
+std::vector<MethodName> parse_methods(const std::string& list);
+
+/// Every step-th pixel of every step-th row, and the camera that sees them. Only `depth` of the camera is
+/// scaled, and `color` with it where the sensor is registered. Precondition: step >= 1.
+DepthImage decimated(const DepthImage& depth, int step);
+CameraInfo decimated(const CameraInfo& camera, int step);
+
+/// Labels of a decimated image spread to the full one: each pixel takes the label of the nearest sample where
+/// its reading is trusted and lies within tolerance() of that label's plane.
+Image<std::uint16_t> spread(const Image<std::uint16_t>& labels, const std::vector<PlanarRegion>& regions,
+                            const DepthImage& depth, const CameraInfo& camera, int step);
+
+/// A method, ready to run frame after frame.
+class Method {
+  public:
+    explicit Method(const MethodName& name);
+
+    /// Finds the planes; returns the thread's CPU time in milliseconds, decimation included.
+    double run(const DepthImage& depth, const CameraInfo& camera);
+    /// What the last run() found, labels in the full size. Not part of the time.
+    const Segmentation& result(const DepthImage& depth, const CameraInfo& camera);
+
+  private:
+    std::unique_ptr<Finder> finder_;
+    int step_ = 1;  // of our decimation; 1 where the method itself subsamples
+    Segmentation segmentation_;
+};
+
+}  // namespace planemap::bench

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One row of the benchmark's table: a method on a sequence.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "bench_segmentation/consistency.hpp"
+#include "bench_segmentation/methods.hpp"
+#include "bench_segmentation/metrics.hpp"
+#include "bench_segmentation/sequences.hpp"
+
+namespace planemap::bench {
+
+/// What a method did on a sequence so far.
+struct Row {
+    std::string sequence;
+    MethodName method;
+    std::vector<double> ms;  ///< of each frame
+    FrameScore score;
+    MatchScore match;
+    WorldPlanes world_planes;
+    bool has_truth = false, has_poses = false;
+
+    /// Takes in one frame. `normals` are the frame's local_normals().
+    void add(double frame_ms, const BenchFrame& frame, const CameraInfo& camera,
+             const Image<Eigen::Vector3f>& normals, const Segmentation& segmentation);
+};
+
+/// The heading and the lines of a table with aligned columns; "-" where a sequence has no truth or no poses.
+std::string table_heading();
+std::string table_line(const Row& row);
+
+/// A row as --json writes it; null where a sequence has no truth or no poses.
+nlohmann::ordered_json to_json(const Row& row);
+
+}  // namespace planemap::bench

@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench_segmentation/sequences.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <sstream>
+#include <stdexcept>
+#include <tuple>
+
+#include "core/files.hpp"
+#include "core/moments.hpp"
+#include "core/trajectory.hpp"
+#include "sensor/camera_file.hpp"
+#include "sensor/dataset.hpp"
+#include "sensor/png.hpp"
+#include "sensor/simulator/simulated_source.hpp"
+
+namespace planemap::bench {
+
+namespace {
+
+constexpr std::int64_t kMaxPoseGap_us = 50'000;
+
+/// The pose between the two true poses around a time; nothing where they are further than 50 ms from it.
+std::optional<Pose> pose_near(const Trajectory& truth, std::int64_t utime) {
+    const auto after =
+        std::lower_bound(truth.begin(), truth.end(), utime,
+                         [](const StampedPose& pose, std::int64_t t) { return pose.utime < t; });
+    const auto near = [&](auto it) {
+        return it != truth.end() && std::abs(it->utime - utime) <= kMaxPoseGap_us;
+    };
+    if (!near(after) && (after == truth.begin() || !near(std::prev(after)))) return std::nullopt;
+    return sim::pose_at(truth, utime);
+}
+
+/// A recording in the TUM layout: depth, and poses where there are some.
+Sequence open_recording(const std::filesystem::path& folder, std::size_t frames) {
+    const auto dataset = std::make_shared<const Dataset>(folder);
+    const CameraInfo& camera = dataset->camera();
+    Trajectory truth;
+    if (std::filesystem::exists(folder / "groundtruth.txt"))
+        truth = read_trajectory(folder / "groundtruth.txt");
+    const auto load = [=](std::size_t index) {
+        const ListedImage& listed = dataset->frames()[index].depth;
+        const std::filesystem::path file = folder / listed.file;
+        BenchFrame frame;
+        try {
+            frame.depth = decode_depth_png(read_file(file), camera.depth.width, camera.depth.height);
+        } catch (const std::runtime_error& error) {
+            throw std::runtime_error(file.string() + ": " + error.what());
+        }
+        if (const auto world_from_color = pose_near(truth, listed.utime))
+            frame.world_from_depth = *world_from_color * camera.color_from_depth;
+        return frame;
+    };
+    return {folder.filename(), camera, evenly_spread(dataset->frames().size(), frames), load};
+}
+
+/// The least-squares plane of each surface's points.
+std::vector<Plane> fit_surfaces(const Image<std::uint16_t>& surfaces, const DepthImage& depth,
+                                const CameraInfo& camera) {
+    std::vector<Moments> moments;
+    for (int v = 0; v < depth.height; ++v) {
+        for (int u = 0; u < depth.width; ++u) {
+            const std::size_t surface = surfaces(u, v);
+            if (surface == 0 || !is_valid_depth(depth(u, v))) continue;
+            if (moments.size() < surface) moments.resize(surface);
+            moments[surface - 1].add(camera.depth.unproject(u, v, camera.metres(depth(u, v))));
+        }
+    }
+    std::vector<Plane> planes;
+    for (const Moments& m : moments) planes.push_back(fit_plane(m).plane);
+    return planes;
+}
+
+/// Images with a label image each: one colour a plane, black for none. True planes are fitted to the depth.
+Sequence open_labelled(const std::filesystem::path& folder, std::size_t frames) {
+    const CameraInfo camera = read_camera_file(folder / "camera.json");
+    std::size_t count = 0;
+    while (std::filesystem::exists(folder / (std::to_string(count) + ".depth.png"))) ++count;
+    const auto load = [=](std::size_t index) {
+        const std::string stem = (folder / std::to_string(index)).string();
+        const int width = camera.depth.width, height = camera.depth.height;
+        BenchFrame frame;
+        frame.depth = decode_depth_png(read_file(stem + ".depth.png"), width, height);
+        const RgbImage colors = decode_color_png(read_file(stem + ".labels.png"), width, height);
+        Image<std::uint16_t> surfaces(width, height);
+        std::map<std::tuple<int, int, int>, std::uint16_t> surface_of{{{0, 0, 0}, std::uint16_t{0}}};
+        for (std::size_t i = 0; i < colors.pixels.size(); ++i) {
+            const Rgb& c = colors.pixels[i];
+            surfaces.pixels[i] =
+                surface_of.try_emplace({c.r, c.g, c.b}, static_cast<std::uint16_t>(surface_of.size()))
+                    .first->second;
+        }
+        std::vector<Plane> planes = fit_surfaces(surfaces, frame.depth, camera);
+        planes.resize(surface_of.size());
+        frame.truth = make_truth(surfaces, planes, frame.depth, camera);
+        return frame;
+    };
+    return {folder.filename(), camera, evenly_spread(count, frames), load};
+}
+
+/// For each surface of a world the first one on the same plane (within 1 mm and 0.06 deg) that faces the same
+/// way: two cupboards in a row show one plane.
+std::vector<std::size_t> first_on_same_plane(const sim::World& world) {
+    std::vector<std::size_t> first;
+    for (const sim::Surface& surface : world.surfaces) {
+        const auto same = std::find_if(world.surfaces.begin(), world.surfaces.end(), [&](const auto& other) {
+            return angle_between(surface.plane.normal, other.plane.normal) < 1e-3 &&
+                   std::abs(surface.plane.d - other.plane.d) < 1e-3;
+        });
+        first.push_back(static_cast<std::size_t>(same - world.surfaces.begin()));
+    }
+    return first;
+}
+
+Truth truth_of_view(const sim::World& world, const sim::View& view, const DepthImage& depth,
+                    const CameraInfo& camera) {
+    const std::vector<std::size_t> first = first_on_same_plane(world);
+    const Pose camera_from_world = view.world_from_camera.inverse();
+    std::vector<Plane> planes;
+    for (const sim::Surface& surface : world.surfaces) planes.push_back(camera_from_world * surface.plane);
+    Image<std::uint16_t> surfaces(depth.width, depth.height);
+    for (std::size_t i = 0; i < surfaces.pixels.size(); ++i) {
+        const int rectangle = view.rectangle.pixels[i];
+        if (rectangle < 0) continue;
+        const int surface = world.rectangles[static_cast<std::size_t>(rectangle)].surface;
+        surfaces.pixels[i] = static_cast<std::uint16_t>(first[static_cast<std::size_t>(surface)] + 1);
+    }
+    return make_truth(surfaces, planes, depth, camera);
+}
+
+/// The rendered room, 30 s of a hand-held walk through it.
+Sequence open_office(std::size_t frames) {
+    const auto source =
+        std::make_shared<const sim::SimulatedSource>(sim::parse_simulator_name("sim:office?frames=900"));
+    const auto load = [source](std::size_t index) {
+        const sim::View view = source->depth_view(index);
+        BenchFrame frame;
+        frame.depth = source->frame(index).depth;
+        frame.world_from_depth = view.world_from_camera;
+        frame.truth = truth_of_view(source->world(), view, frame.depth, source->camera());
+        return frame;
+    };
+    return {"sim:office", source->camera(), evenly_spread(900, frames), load};
+}
+
+/// One wall, 1 to 3 m away and turned by up to 45 deg, that fills the image, without noise.
+Sequence open_wall(std::size_t frames) {
+    const CameraInfo camera = kinect_camera();
+    const auto load = [=](std::size_t index) {
+        const double k = static_cast<double>(index), angle = 0.25 * std::numbers::pi * std::sin(k);
+        const Eigen::Vector3d normal =
+            Eigen::AngleAxisd(angle, Eigen::Vector3d(std::cos(k), std::sin(k), 0)) *
+            -Eigen::Vector3d::UnitZ();
+        const Plane wall{normal, -normal.z() * (1 + 0.5 * static_cast<double>(index % 5))};
+        BenchFrame frame{DepthImage(camera.depth.width, camera.depth.height), {}, {}};
+        for (int v = 0; v < frame.depth.height; ++v) {
+            for (int u = 0; u < frame.depth.width; ++u) {
+                const double z = -wall.d / normal.dot(camera.depth.unproject(u, v, 1));
+                frame.depth(u, v) = static_cast<std::uint16_t>(std::lround(z * camera.depth_units_per_metre));
+            }
+        }
+        frame.truth = make_truth(Image<std::uint16_t>(frame.depth.width, frame.depth.height, 1), {wall},
+                                 frame.depth, camera);
+        return frame;
+    };
+    return {"wall", camera, evenly_spread(frames, frames), load};
+}
+
+/// Every reading a random depth from 0.5 to 4 m of its own; nothing is true.
+Sequence open_noise(std::size_t frames) {
+    const CameraInfo camera = kinect_camera();
+    const auto load = [=](std::size_t index) {
+        BenchFrame frame{DepthImage(camera.depth.width, camera.depth.height), {}, {}};
+        std::uint64_t state = index + 1;
+        for (std::uint16_t& raw : frame.depth.pixels) {
+            state = state * 6364136223846793005u + 1442695040888963407u;
+            raw = static_cast<std::uint16_t>(500 + (state >> 40) % 3500);
+        }
+        return frame;
+    };
+    return {"noise", camera, evenly_spread(frames, frames), load};
+}
+
+}  // namespace
+
+const std::vector<SequenceInfo>& known_sequences() {
+    static const std::vector<SequenceInfo> sequences{
+        {"redkitchen", "Kinect, hand-held, a kitchen", 100},
+        {"fr1_rpy_start", "Kinect, fast rotations over a desk", 50},
+        {"fr3_cabinet", "Xtion, around a cabinet", 58},
+        {"livingroom_micro", "synthetic living room without noise", 50},
+        {"sim:office", "the simulator's room with a Kinect's noise, exact truth", 60},
+        {"plane_labels", "three synthetic living-room images with true labels", 3},
+        {"wall", "worst case: one clean wall that fills the image", 10},
+        {"noise", "worst case: every reading random", 10},
+    };
+    return sequences;
+}
+
+std::vector<SequenceInfo> parse_sequences(const std::string& list) {
+    std::vector<SequenceInfo> sequences;
+    std::istringstream words(list);
+    for (std::string word; std::getline(words, word, ',');) {
+        std::string names;
+        for (const SequenceInfo& info : known_sequences()) {
+            if (info.name == word) sequences.push_back(info);
+            names += (names.empty() ? "" : ", ") + info.name;
+        }
+        if (sequences.empty() || sequences.back().name != word)
+            throw std::invalid_argument("sequences: there is no \"" + word + "\", only " + names);
+    }
+    if (sequences.empty()) throw std::invalid_argument("sequences: none given");
+    return sequences;
+}
+
+std::optional<Sequence> open_sequence(const SequenceInfo& info, int frames,
+                                      const std::filesystem::path& data_folder, std::string& missing) {
+    const auto count = static_cast<std::size_t>(frames);
+    if (info.name == "sim:office") return open_office(count);
+    if (info.name == "wall") return open_wall(count);
+    if (info.name == "noise") return open_noise(count);
+    const std::filesystem::path folder = data_folder / info.name;
+    if (!std::filesystem::is_directory(folder)) {
+        missing = folder.string() + ": no such folder (set PLANEMAP_DATA, or give --data)";
+        return std::nullopt;
+    }
+    return info.name == "plane_labels" ? open_labelled(folder, count) : open_recording(folder, count);
+}
+
+std::vector<std::size_t> evenly_spread(std::size_t size, std::size_t count) {
+    std::vector<std::size_t> indices;
+    count = std::min(size, count);
+    for (std::size_t i = 0; i < count; ++i) indices.push_back(i * size / count);
+    return indices;
+}
+
+CameraInfo kinect_camera() {
+    CameraInfo camera;
+    camera.depth = camera.color = {640, 480, 585, 585, 319.5, 239.5};
+    return camera;
+}
+
+BenchFrame render_frame(const sim::World& world, const CameraInfo& camera, const Pose& world_from_camera,
+                        bool noise, std::uint64_t seed) {
+    const sim::View view = sim::render_view(world, camera.depth, world_from_camera);
+    sim::DepthSensorOptions options;
+    options.noise = noise;
+    options.max_m = camera.depth_max_m;
+    const sim::GaussianTable gaussian;
+    BenchFrame frame;
+    frame.depth = sim::sense_depth(world, view, options, gaussian, seed);
+    frame.world_from_depth = world_from_camera;
+    frame.truth = truth_of_view(world, view, frame.depth, camera);
+    return frame;
+}
+
+}  // namespace planemap::bench

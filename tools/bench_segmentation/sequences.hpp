@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The frames that methods are compared on.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench_segmentation/truth.hpp"
+#include "core/camera.hpp"
+#include "sensor/simulator/world.hpp"
+
+namespace planemap::bench {
+
+/// One frame with all that is known of it.
+struct BenchFrame {
+    DepthImage depth;
+    std::optional<Pose> world_from_depth;  ///< true pose of the depth camera
+    std::optional<Truth> truth;
+};
+
+/// Frames of one sensor, evenly spread over a recording. Every frame has an index in the recording.
+struct Sequence {
+    std::string name;
+    CameraInfo camera;
+    std::vector<std::size_t> indices;
+    std::function<BenchFrame(std::size_t index)> load;  ///< throws std::runtime_error naming file and reason
+};
+
+/// A sequence by name, as --sequences takes it.
+struct SequenceInfo {
+    std::string name;
+    std::string what;  ///< one line for --help
+    int frames = 0;    ///< run by default
+};
+const std::vector<SequenceInfo>& known_sequences();
+
+/// Names of a list "redkitchen,sim:office"; throws std::invalid_argument for an unknown one, listing what
+/// there is.
+std::vector<SequenceInfo> parse_sequences(const std::string& list);
+
+/// Opens a sequence with `frames` frames, or all there are if fewer. Returns nothing, and why in `missing`,
+/// if its data is not there.
+std::optional<Sequence> open_sequence(const SequenceInfo& info, int frames,
+                                      const std::filesystem::path& data_folder, std::string& missing);
+
+/// `count` numbers from 0 to size - 1, evenly spread; all of them if there are not more.
+std::vector<std::size_t> evenly_spread(std::size_t size, std::size_t count);
+
+/// A rendered Kinect's camera, and what it sees of a world. World frame of the simulator: z up.
+CameraInfo kinect_camera();
+BenchFrame render_frame(const sim::World& world, const CameraInfo& camera, const Pose& world_from_camera,
+                        bool noise, std::uint64_t seed);
+
+}  // namespace planemap::bench

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "segment/segment_images.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "core/files.hpp"
+#include "segment/overlay.hpp"
+#include "segment/region_json.hpp"
+#include "segment/thread_time.hpp"
+#include "sensor/png.hpp"
+
+namespace planemap {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// "37 of 100" on stderr: often on a terminal, every 5 s elsewhere, and not at all for one image.
+class Progress {
+  public:
+    Progress(std::size_t total, bool quiet) : total_(total), shown_(!quiet && total > 1) {}
+    ~Progress() {
+        if (shown_ && terminal_) std::fputs("\r\033[K", stderr);
+    }
+    Progress(const Progress&) = delete;
+    Progress& operator=(const Progress&) = delete;
+
+    void show(std::size_t done) {
+        const auto now = Clock::now();
+        if (!shown_ || now - last_ < (terminal_ ? std::chrono::milliseconds(100) : std::chrono::seconds(5)))
+            return;
+        std::fprintf(stderr, "%simage %zu of %zu%s", terminal_ ? "\r\033[K" : "", done, total_,
+                     terminal_ ? "" : "\n");
+        last_ = now;
+    }
+
+  private:
+    std::size_t total_;
+    bool shown_, terminal_ = ::isatty(STDERR_FILENO) == 1;
+    Clock::time_point last_ = Clock::now();
+};
+
+/// The value at a share of sorted values, by nearest rank.
+double at_share(const std::vector<double>& sorted, double share) {
+    const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(sorted.size())));
+    return sorted[std::max<std::size_t>(rank, 1) - 1];
+}
+
+/// Thread CPU time of `repeat` runs; the segmenter has been run on the image before.
+nlohmann::ordered_json measure(Segmenter& segmenter, const DepthImage& depth, const CameraInfo& camera,
+                               int repeat) {
+    std::vector<double> ms;
+    Segmentation unused;
+    segmenter.segment(depth, camera, unused);
+    for (int i = 0; i < repeat; ++i) {
+        const double start = thread_ms();
+        segmenter.segment(depth, camera, unused);
+        ms.push_back(thread_ms() - start);
+    }
+    std::sort(ms.begin(), ms.end());
+    return {{"median", at_share(ms, 0.5)}, {"p95", at_share(ms, 0.95)}, {"repeats", repeat}};
+}
+
+DepthImage read_depth(const std::filesystem::path& file, const CameraInfo& camera) {
+    const std::string bytes = read_file(file);
+    try {
+        return decode_depth_png(bytes, camera.depth.width, camera.depth.height);
+    } catch (const std::runtime_error& error) {
+        throw std::runtime_error(file.string() + ": " + error.what());
+    }
+}
+
+/// The files of one image's results.
+struct Results {
+    std::filesystem::path labels, json, overlay;
+
+    Results(const std::filesystem::path& folder, const std::filesystem::path& image) {
+        const std::filesystem::path stem = folder / image.stem();
+        labels = stem.string() + ".png";
+        json = stem.string() + ".json";
+        overlay = stem.string() + ".overlay.png";
+    }
+};
+
+void refuse_to_overwrite(const Results& results, const std::vector<std::filesystem::path>& inputs) {
+    for (const std::filesystem::path& input : inputs) {
+        for (const std::filesystem::path& file : {results.labels, results.overlay}) {
+            std::error_code no_file;
+            if (std::filesystem::equivalent(file, input, no_file))
+                throw std::runtime_error(file.string() + ": is an input; give another --output");
+        }
+    }
+}
+
+}  // namespace
+
+void SegmentImagesOptions::validate() const {
+    FieldErrors errors("segment options");
+    errors.require(!images.empty(), "images", "none", "at least one file");
+    errors.require(!output.empty(), "output", "empty", "a folder");
+    errors.require(repeat >= 0, "repeat", repeat, "at least 0");
+    std::map<std::string, std::string> image_of;
+    for (const std::filesystem::path& image : images) {
+        const auto [other, is_new] = image_of.try_emplace(image.stem().string(), image.string());
+        errors.require(is_new, "images", image.string(),
+                       "of another name than " + other->second + ", whose results it would overwrite");
+    }
+    errors.throw_if_any();
+    segmentation.validate();
+}
+
+SegmentImagesReport segment_images(const SegmentImagesOptions& options, const CameraInfo& camera) {
+    options.validate();
+    camera.validate();
+    std::error_code error;
+    std::filesystem::create_directories(options.output, error);
+    if (error) throw std::runtime_error(options.output.string() + ": cannot be made: " + error.message());
+
+    const std::unique_ptr<Segmenter> segmenter = make_segmenter(options.segmentation);
+    SegmentImagesReport report;
+    Progress progress(options.images.size(), options.quiet);
+    Segmentation segmentation;
+    const auto segment_one = [&](const std::filesystem::path& image) {
+        const Results results(options.output, image);
+        refuse_to_overwrite(results, options.images);
+        const DepthImage depth = read_depth(image, camera);
+        segmenter->segment(depth, camera, segmentation);
+        nlohmann::ordered_json json{{"image", image.string()},
+                                    {"width", depth.width},
+                                    {"height", depth.height},
+                                    {"method", options.segmentation.method},
+                                    {"labels", results.labels.filename().string()},
+                                    {"regions", regions_json(segmentation)}};
+        if (options.repeat > 0) json["time_ms"] = measure(*segmenter, depth, camera, options.repeat);
+        write_depth_png(results.labels, segmentation.labels);
+        if (options.overlay) write_color_png(results.overlay, draw_overlay(depth, camera, segmentation));
+        write_file(results.json, json.dump(1) + "\n");
+        report.regions += segmentation.regions.size();
+    };
+    for (std::size_t i = 0; i < options.images.size(); ++i) {
+        progress.show(i);
+        try {
+            segment_one(options.images[i]);
+        } catch (const std::exception& failure) {
+            report.errors.emplace_back(failure.what());
+        }
+    }
+    return report;
+}
+
+std::vector<std::string> take_files(std::vector<std::string>& arguments,
+                                    const std::vector<std::string>& switches) {
+    std::vector<std::string> files, flags;
+    for (auto argument = arguments.begin(); argument != arguments.end(); ++argument) {
+        if (*argument == "--") {
+            files.insert(files.end(), argument + 1, arguments.end());
+            break;
+        }
+        if (argument->size() < 2 || argument->front() != '-') {
+            files.push_back(*argument);
+            continue;
+        }
+        flags.push_back(*argument);
+        const bool has_value = argument->find('=') == std::string::npos &&
+                               std::find(switches.begin(), switches.end(), *argument) == switches.end();
+        if (has_value && argument + 1 != arguments.end()) flags.push_back(*++argument);
+    }
+    arguments = flags;
+    return files;
+}
+
+}  // namespace planemap

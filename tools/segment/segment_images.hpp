@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Depth images in files to label images and regions in files.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/camera.hpp"
+#include "segmentation/segmentation.hpp"
+
+namespace planemap {
+
+struct SegmentImagesOptions {
+    std::vector<std::filesystem::path> images;  ///< 16-bit PNG, of the size of the camera's depth image
+    std::filesystem::path output;               ///< folder; made if it is not there
+    int repeat = 0;                             ///< runs an image whose time is measured; 0: none
+    bool overlay = false;                       ///< write STEM.overlay.png, too
+    bool quiet = false;                         ///< no progress on stderr
+    SegmentationOptions segmentation;
+
+    /// Throws std::invalid_argument that names every bad field, and for two images whose results would have
+    /// the same name.
+    void validate() const;
+};
+
+struct SegmentImagesReport {
+    std::size_t regions = 0;          ///< in all images together
+    std::vector<std::string> errors;  ///< one line for each image that could not be done: file and reason
+};
+
+/// Writes for each image output/STEM.png (labels, 16-bit greyscale; 0: none, i: region i) and
+/// output/STEM.json, see README. An image that cannot be read, has not the camera's size, or whose results
+/// cannot be written, or would overwrite an input, costs itself only. Throws std::invalid_argument for bad
+/// options or a bad camera, std::runtime_error if the folder cannot be made.
+SegmentImagesReport segment_images(const SegmentImagesOptions& options, const CameraInfo& camera);
+
+/// Takes the arguments that are neither flags nor values of flags out of a command line: the files. Every
+/// flag takes a value unless it is written --flag=value or stands in `switches`. What follows "--" is a file.
+std::vector<std::string> take_files(std::vector<std::string>& arguments,
+                                    const std::vector<std::string>& switches);
+
+}  // namespace planemap
