@@ -82,19 +82,23 @@ std::vector<Row> Benchmark::run(const SequenceInfo& info, const std::vector<Meth
         for (const std::size_t i : evenly_spread(sequence->indices.size(), count))
             contenders.back().indices.push_back(sequence->indices[i]);
     }
+    Row truth;
+    truth.sequence = info.name;
+    truth.method = {"truth", 1};
     for (std::size_t i = 0; i < sequence->indices.size(); ++i) {
         const bool draw =
             !options_.overlays.empty() && i % static_cast<std::size_t>(options_.overlay_every) == 0;
-        run_frame(*sequence, sequence->indices[i], draw, contenders);
+        run_frame(*sequence, sequence->indices[i], draw, contenders, truth);
     }
     end_progress();
     std::vector<Row> rows;
+    if (truth.has_truth) rows.push_back(std::move(truth));
     for (Contender& contender : contenders) rows.push_back(std::move(contender.row));
     return rows;
 }
 
 void Benchmark::run_frame(const Sequence& sequence, std::size_t index, bool draw,
-                          std::vector<Contender>& contenders) {
+                          std::vector<Contender>& contenders, Row& truth) {
     BenchFrame frame;
     try {
         frame = sequence.load(index);
@@ -104,7 +108,11 @@ void Benchmark::run_frame(const Sequence& sequence, std::size_t index, bool draw
         return;
     }
     const auto normals = local_normals(frame.depth, sequence.camera);
-    if (draw && frame.truth) this->draw(sequence, index, "truth", frame.depth, as_segmentation(*frame.truth));
+    if (frame.truth) {
+        const Segmentation perfect = as_segmentation(*frame.truth);
+        truth.add(std::nullopt, frame, sequence.camera, normals, perfect);
+        if (draw) this->draw(sequence, index, "truth", frame.depth, perfect);
+    }
     for (Contender& contender : contenders) {
         if (!std::binary_search(contender.indices.begin(), contender.indices.end(), index)) continue;
         const MethodName& name = contender.row.method;
