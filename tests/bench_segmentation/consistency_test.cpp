@@ -32,6 +32,16 @@ TEST(WorldPlanes, SpreadIsTheStandardDeviation) {
     EXPECT_NEAR(spread.distance_m, 0.01, 0.0005);
 }
 
+TEST(WorldPlanes, SightingsCountByTheirPixels) {
+    WorldPlanes planes;
+    for (int i = 0; i < 100; ++i) {
+        planes.add(sighting(1, 0, i % 2 == 0 ? 0.001 : -0.001, 1e6));
+        planes.add(sighting(1, i % 2 == 0 ? 5 : -5, 0.02, 1));
+    }
+    EXPECT_NEAR(planes.spread_of_largest(5).distance_m, 0.001, 1e-4);
+    EXPECT_LT(planes.spread_of_largest(5).angle_deg, 0.1);
+}
+
 TEST(WorldPlanes, PlanesApartAreToldApartAndTheMedianIsTaken) {
     WorldPlanes planes;
     for (int i = 0; i < 30; ++i) {

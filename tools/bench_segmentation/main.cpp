@@ -74,7 +74,7 @@ std::string description() {
            "  corr over under miss noise   SegComp's instances at 80 % (Hoover et al. 1996)\n"
            "  deg mm    median error of the matched regions' normals, and distances at their centroids\n"
            "  spread    of the five largest world planes' normals and distances from frame to frame under\n"
-           "            the true poses: standard deviation, median of the five\n"
+           "            the true poses: standard deviation weighted by pixels, median of the five\n"
            "Under subsampling, labels spread to the nearest pixels that lie within max(1.5 cm, 3 sigma).";
 }
 

@@ -51,6 +51,7 @@ bool is_ransac(const std::string& name) {
 }
 
 std::unique_ptr<Finder> make_finder(const MethodName& method) {
+    silence_pcl();
     const int step = method.subsampling;
     const auto ours = [](std::unique_ptr<Segmenter> segmenter) {
         return std::make_unique<SegmenterFinder>(std::move(segmenter));

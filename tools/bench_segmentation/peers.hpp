@@ -24,4 +24,7 @@ std::unique_ptr<Finder> make_rgbd_plane(int block_px, bool with_normals);
 /// project's flags.
 std::unique_ptr<Segmenter> make_debian_ransac_segmenter(const RansacOptions& options, std::uint64_t seed);
 
+/// Keeps PCL from writing a line for every unlucky sample.
+void silence_pcl();
+
 }  // namespace planemap::bench
