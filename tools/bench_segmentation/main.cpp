@@ -48,7 +48,7 @@ std::string description() {
     return "Methods that find planes in depth images, on the same frames, one thread.\n"
            "Examples:\n  " +
            std::string(kProgram) +
-           " --json rows.json                       everything, about 3 minutes\n"
+           " --json rows.json                       everything, about 2 minutes\n"
            "  planemap-bench-segmentation --sequences redkitchen --methods cells,ransac/4\n"
            "  planemap-bench-segmentation --table1                                the paper's Table 1\n"
            "  planemap-bench-segmentation --sequences sim:office --methods cells/1 --overlays out/overlays\n"
@@ -65,7 +65,7 @@ std::string description() {
            "  planes    regions a frame, of any size\n"
            "  expl%     readings that carry a label and lie within max(1.5 cm, 3 sigma) of its plane, with\n"
            "            sigma(z) = 0.0012 + 0.0019 (z - 0.4)^2 m\n"
-           "  coh%      of the locally planar pixels (17 x 17 pixels around fit a plane within 3 sigma "
+           "  coh%      of the locally planar pixels (17 x 17 pixels around fit a plane within 2 sigma "
            "RMS):\n"
            "            explained by a plane within 20 deg of the local normal\n"
            "  off30%    of the locally planar pixels with a label: its plane is more than 30 deg off\n"

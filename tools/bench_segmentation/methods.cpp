@@ -105,7 +105,7 @@ const std::vector<MethodInfo>& known_methods() {
         {"ransac-debian", "the same with Debian's build of PCL's templates", {4}, {1, 2, 4}},
         {"organised", "PCL's organised multi-plane segmentation, 3D-gradient normals", {1}, {1}},
         {"rgbdplane", "OpenCV's RgbdPlane without normals", {4}, {1, 2}},
-        {"rgbdplane-normals", "OpenCV's RgbdPlane with LINEMOD normals", {4}, {1, 2}},
+        {"rgbdplane-normals", "OpenCV's RgbdPlane with FALS normals", {4}, {1, 2}},
     };
     return methods;
 }

@@ -16,7 +16,7 @@ namespace planemap::bench {
 std::unique_ptr<Finder> make_organised(int min_inliers);
 
 /// OpenCV's RgbdPlane (Poppinga et al. 2008, as in ORK's tabletop) with the Kinect's error model; blocks of
-/// `block_px` pixels. Without normals a block grows by distance to the plane alone; with them (LINEMOD's) by
+/// `block_px` pixels. Without normals a block grows by distance to the plane alone; with them (FALS) by
 /// the angle of each pixel's normal, too. The point cloud and the normals are part of the time.
 std::unique_ptr<Finder> make_rgbd_plane(int block_px, bool with_normals);
 
