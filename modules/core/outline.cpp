@@ -32,53 +32,29 @@ bool contains(const Ring& ring, const Eigen::Vector2d& p) {
     return inside;
 }
 
-/// Marks the vertices to keep between first and last (indices into a ring, last may wrap past its end).
-void douglas_peucker(const Ring& ring, std::size_t first, std::size_t last, double tolerance,
-                     std::vector<bool>& keep) {
-    std::vector<std::pair<std::size_t, std::size_t>> pending{{first, last}};
+/// Marks the vertices to keep between first and last, by Douglas and Peucker.
+void mark_kept(const Ring& path, std::size_t first, std::size_t last, double tolerance,
+               RingSimplifier::Buffers& buffers) {
+    auto& pending = buffers.pending;
+    pending.assign(1, {first, last});
     while (!pending.empty()) {
         const auto [from, to] = pending.back();
         pending.pop_back();
-        double worst = tolerance;
+        const Eigen::Vector2d a = path[from], ab = path[to] - a;
+        const double length2 = ab.squaredNorm(), per_length2 = length2 > 0 ? 1 / length2 : 0;
+        double worst = tolerance * tolerance;
         std::size_t worst_at = from;
         for (std::size_t i = from + 1; i < to; ++i) {
-            const double d =
-                distance_to_segment(ring[i % ring.size()], ring[from % ring.size()], ring[to % ring.size()]);
-            if (d > worst) {
-                worst = d;
-                worst_at = i;
-            }
+            const Eigen::Vector2d ap = path[i] - a;
+            const double along = std::clamp(ap.dot(ab) * per_length2, 0.0, 1.0);
+            const double distance2 = (ap - along * ab).squaredNorm();
+            if (distance2 > worst) worst = distance2, worst_at = i;
         }
         if (worst_at == from) continue;
-        keep[worst_at % ring.size()] = true;
+        buffers.keep[worst_at] = 1;
         pending.emplace_back(from, worst_at);
         pending.emplace_back(worst_at, to);
     }
-}
-
-Ring simplified(const Ring& ring, double tolerance) {
-    if (ring.size() < 3) return {};
-    // Two anchors that are certainly kept: the lexicographically smallest vertex and the one farthest from
-    // it.
-    std::size_t anchor = 0, far = 0;
-    for (std::size_t i = 1; i < ring.size(); ++i) {
-        if (std::pair(ring[i].x(), ring[i].y()) < std::pair(ring[anchor].x(), ring[anchor].y())) anchor = i;
-    }
-    for (std::size_t i = 0; i < ring.size(); ++i) {
-        if ((ring[i] - ring[anchor]).squaredNorm() > (ring[far] - ring[anchor]).squaredNorm()) far = i;
-    }
-    if (far == anchor) return {};
-    const std::size_t end = far > anchor ? far : far + ring.size();
-    std::vector<bool> keep(ring.size(), false);
-    keep[anchor] = keep[far] = true;
-    douglas_peucker(ring, anchor, end, tolerance, keep);
-    douglas_peucker(ring, end, anchor + ring.size(), tolerance, keep);
-    Ring result;
-    for (std::size_t i = 0; i < ring.size(); ++i) {
-        if (keep[i]) result.push_back(ring[i]);
-    }
-    if (result.size() < 3 || signed_area(result) == 0) return {};
-    return result;
 }
 
 }  // namespace
@@ -129,11 +105,40 @@ double distance(const Outline& outline, const Eigen::Vector2d& p) {
     return nearest;
 }
 
+void RingSimplifier::simplify(Ring& ring, double tolerance) {
+    if (ring.size() < 3) return ring.clear();
+    // Two anchors that are certainly kept: the lexicographically smallest vertex and the one farthest from
+    // it. The path goes from the first of them around to it again.
+    std::size_t anchor = 0, far = 0;
+    for (std::size_t i = 1; i < ring.size(); ++i) {
+        if (std::pair(ring[i].x(), ring[i].y()) < std::pair(ring[anchor].x(), ring[anchor].y())) anchor = i;
+    }
+    Ring& path = buffers_.path;
+    path.assign(ring.begin() + static_cast<std::ptrdiff_t>(anchor), ring.end());
+    path.insert(path.end(), ring.begin(), ring.begin() + static_cast<std::ptrdiff_t>(anchor) + 1);
+    double farthest = 0;
+    for (std::size_t i = 1; i + 1 < path.size(); ++i) {
+        const double distance2 = (path[i] - path[0]).squaredNorm();
+        if (distance2 > farthest) farthest = distance2, far = i;
+    }
+    if (far == 0) return ring.clear();
+    buffers_.keep.assign(path.size(), 0);
+    buffers_.keep[0] = buffers_.keep[far] = 1;
+    mark_kept(path, 0, far, tolerance, buffers_);
+    mark_kept(path, far, path.size() - 1, tolerance, buffers_);
+    ring.clear();
+    for (std::size_t i = 0; i + 1 < path.size(); ++i) {
+        if (buffers_.keep[i] != 0) ring.push_back(path[i]);
+    }
+    if (ring.size() < 3 || signed_area(ring) == 0) ring.clear();
+}
+
 Outline simplified(const Outline& outline, double tolerance) {
+    RingSimplifier simplifier;
     Outline result;
-    for (const Ring& ring : outline.rings) {
-        Ring simple = simplified(ring, tolerance);
-        if (!simple.empty()) result.rings.push_back(std::move(simple));
+    for (Ring ring : outline.rings) {
+        simplifier.simplify(ring, tolerance);
+        if (!ring.empty()) result.rings.push_back(std::move(ring));
     }
     return result;
 }

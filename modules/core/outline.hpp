@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace planemap {
@@ -32,6 +33,22 @@ bool contains(const Outline& outline, const Eigen::Vector2d& p);
 
 /// Distance from a point to the outline's area: 0 inside; infinity for an empty outline.
 double distance(const Outline& outline, const Eigen::Vector2d& p);
+
+/// Simplifies rings one after the other with the same buffers.
+class RingSimplifier {
+  public:
+    struct Buffers {
+        Ring path;
+        std::vector<std::uint8_t> keep;
+        std::vector<std::pair<std::size_t, std::size_t>> pending;
+    };
+
+    /// Douglas-Peucker in place; see simplified(). A ring that collapses is left empty.
+    void simplify(Ring& ring, double tolerance);
+
+  private:
+    Buffers buffers_;
+};
 
 /// Douglas-Peucker on each ring: no vertex of the input is further than `tolerance` from the result. Rings
 /// that collapse to fewer than three vertices are dropped.

@@ -1,83 +1,73 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The pixel loops of the cell-based method: everything that touches raw depth. A cell is a square of 4 to 32
-// pixels; cells at the right and bottom edges may hang over the image, where no pixel is valid.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
+#include <vector>
 
-#include "core/camera.hpp"
 #include "core/image.hpp"
-#include "core/moments.hpp"
-#include "segmentation/inverse_depth.hpp"
+#include "segmentation/cell_kernels.hpp"
 
 namespace planemap {
 
-/// How far a pixel may lie from the plane it is given to: max(thickness_m, thickness_sigmas sigma(z)).
-struct BorderBand {
-    double thickness_m = 0;
-    double thickness_sigmas = 0;
-    DepthNoise noise;
-};
-
-/// A plane that pixels of a cell may belong to.
-struct Candidate {
-    std::uint16_t label = 0;
-    InverseDepthPlane plane;
-};
-
-/// A depth image cut into cells. Refers to the image: valid while that lives.
+/// A depth image cut into cells of 8 x 8 pixels, row by row. An image whose sides are no multiple of a cell
+/// is padded with invalid readings.
 class CellGrid {
   public:
-    static constexpr std::size_t kMaxCandidates = 8;
+    explicit CellGrid(const CellKernels& kernels) : kernels_(&kernels) {}
 
-    /// Cuts an image; the side of a cell is rounded to a multiple of 4 within 4 to 32 pixels.
-    void reset(const DepthImage& depth, const CameraInfo& camera, double cell_px);
+    /// Cuts an image; what its labels are is open until all its cells are labelled or cleared. `depth` must
+    /// live as long as the grid is used.
+    void reset(const DepthImage& depth, const CellRules& rules);
 
     int columns() const { return columns_; }
     int rows() const { return rows_; }
     int size() const { return columns_ * rows_; }
-    int cell_px() const { return cell_px_; }
 
-    /// Unweighted sums over the valid pixels of a cell.
-    InverseDepthSums inverse_depth_sums(int cell) const;
+    /// Fits each cell to its valid pixels. Afterwards cells() and sums() hold the result.
+    void fit();
+    const std::vector<Cell>& cells() const { return cells_; }
+    /// Unweighted sums over the valid pixels of each cell.
+    const std::vector<PointSums>& sums() const { return sums_; }
 
-    /// Gives each valid pixel of a cell the label of the nearest candidate within the band, or 0, and counts
-    /// the pixels of each candidate. Candidates after the first kMaxCandidates are not looked at.
-    std::array<int, kMaxCandidates> label(int cell, std::span<const Candidate> candidates,
-                                          const BorderBand& band, Image<std::uint16_t>& labels) const;
+    /// A plane as label() takes it.
+    Candidate candidate(const InverseDepthPlane& plane, std::uint16_t label) const;
+    /// The reading that a plane gives in the middle of a cell, kept within what a reading can be.
+    std::uint16_t depth_at(int cell, const Candidate& candidate) const;
 
-    /// Sums over the pixels of a cell that carry the candidate's label; only valid pixels may carry one. The
-    /// pixels should lie near the candidate's plane: sums are taken about it to keep their digits.
-    InverseDepthSums inverse_depth_sums(int cell, const Image<std::uint16_t>& labels,
-                                        const Candidate& candidate) const;
-    /// Moments of the points of these pixels, metres.
-    Moments moments(int cell, const Image<std::uint16_t>& labels, const Candidate& candidate) const;
+    /// See CellKernels::label.
+    void label(int cell, const BorderBand& band, std::span<const Candidate> candidates, std::uint8_t* pixels);
+
+    /// Gives a cell's pixels the label 0.
+    void clear(int cell);
+
+    /// A cell's pixels that carry a label.
+    struct Part {
+        int cell = 0;
+        std::uint16_t label = 0;
+        std::uint16_t reference = 1;  ///< a reading near theirs
+    };
+    /// Sums over the points of up to eight parts.
+    void sum(std::span<const Part> parts, PointSums* sums) const;
+
+    /// Gives the pixels of a cell new labels: `new_label[old]`.
+    void rename(int cell, std::span<const std::uint16_t> new_label);
+    /// Hands over the labels, of the image's size; takes the buffers of `out` for the next image.
+    void take_labels(Image<std::uint16_t>& out);
 
   private:
-    struct Patch {
-        alignas(16) std::array<std::uint16_t, 32 * 32> pixels;
-    };
-    /// Rows of a cell, cell_px() pixels each.
-    struct Rows {
-        const std::uint16_t* first;
-        std::ptrdiff_t stride;
-    };
-    struct Place {
-        int u, v, width, height;  // first pixel, and number of pixels within the image
-    };
-    Place place(int cell) const;
-    /// Inverse depth of a plane at the centre of a cell, kept within what a reading can be.
-    double inverse_depth_at(int cell, const InverseDepthPlane& plane) const;
-    /// The cell in the image itself where it is whole, else copied to `patch` and padded with zeros.
-    Rows rows_of(const Image<std::uint16_t>& image, int cell, Patch& patch) const;
+    int u_of(int cell) const { return cell % columns_ * kCellPx; }
+    int v_of(int cell) const { return cell / columns_ * kCellPx; }
 
-    const DepthImage* depth_ = nullptr;
-    PinholeCamera camera_;
-    double units_per_metre_ = 0;
-    std::uint16_t low_ = 1, high_ = 0;  // valid readings, inclusive
-    int cell_px_ = 4, columns_ = 0, rows_ = 0;
+    const CellKernels* kernels_;
+    CellRules rules_;
+    const DepthImage* depth_ = nullptr;  // the image, or padded_
+    DepthImage padded_;
+    Image<std::uint16_t> labels_;  // of the padded size
+    int width_ = 0, height_ = 0;   // of the image
+    int columns_ = 0, rows_ = 0;
+    std::vector<Cell> cells_;
+    std::vector<PointSums> sums_;
 };
 
 }  // namespace planemap

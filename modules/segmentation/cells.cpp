@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "segmentation/cell_grid.hpp"
@@ -17,138 +19,155 @@ namespace {
 
 class CellSegmenter : public Segmenter {
   public:
-    explicit CellSegmenter(const CellOptions& options) : options_(options), grower_(options) {}
+    CellSegmenter(const CellOptions& options, const CellKernels& kernels)
+        : options_(options), grid_(kernels), grower_(options) {}
 
     void segment(const DepthImage& depth, const CameraInfo& camera, Segmentation& out) override {
         check_input(depth, camera);
-        grid_.reset(depth, camera, options_.cell_fraction * depth.width);
         min_pixels_ = std::max(3.0, options_.min_region_fraction * depth.width * depth.height);
-        fit_cells(camera);
-        grower_.grow(map_, min_pixels_);
-        label_pixels(depth, camera, out.labels);
-        fit_regions(camera, out);
+        grid_.reset(depth, rules_for(camera));
+        grid_.fit();
+        grower_.grow({grid_.columns(), grid_.rows(), kCellPx / camera.depth.fx, camera.noise, grid_.cells(),
+                      grid_.sums()},
+                     min_pixels_);
+        label_pixels({options_.thickness_m, options_.thickness_sigmas, camera.noise});
+        sum_regions(camera);
+        make_regions(out.regions);
+        grid_.take_labels(out.labels);
         tracer_.trace_all(out.labels, camera, out.regions);
     }
 
   private:
     /// The labels that may occur in a cell, and how many of its pixels carry them.
     struct CellLabels {
-        std::size_t size = 0;
-        std::array<std::uint16_t, CellGrid::kMaxCandidates> label{};
-        std::array<int, CellGrid::kMaxCandidates> pixels{};
+        std::uint8_t size = 0;
+        std::array<std::uint8_t, kMaxCandidates> pixels{};
+        std::array<std::uint16_t, kMaxCandidates> label{};
+    };
+    /// What a region's pixels add up to.
+    struct RegionSums {
+        PointSums points;    // unweighted
+        PointSums weighted;  // by the noise
     };
 
-    void fit_cells(const CameraInfo& camera);
-    void label_pixels(const DepthImage& depth, const CameraInfo& camera, Image<std::uint16_t>& labels);
-    void label_cell(int cell, const BorderBand& band, Image<std::uint16_t>& labels);
+    CellRules rules_for(const CameraInfo& camera) const;
+    void label_pixels(const BorderBand& band);
+    void offer_to_neighbours();
+    void label_cell(int cell, const BorderBand& band);
     bool offer(int cell, std::uint16_t label);
-    void fit_regions(const CameraInfo& camera, Segmentation& out);
-    void rename_labels(const std::vector<std::uint16_t>& new_name, Image<std::uint16_t>& labels) const;
+    void sum_regions(const CameraInfo& camera);
+    void sum_waiting(const DepthNoise& noise);
+    void add_sums(const DepthNoise& noise, std::uint16_t label, const PointSums& part);
+    void make_regions(std::vector<PlanarRegion>& regions);
+    void rename_labels();
 
     CellOptions options_;
     double min_pixels_ = 0;
     CellGrid grid_;
-    CellMap map_;
     RegionGrower grower_;
-    std::vector<InverseDepthSums> cell_sums_;  // unweighted, of all valid pixels of each cell
     std::vector<CellLabels> cell_labels_;
+    std::vector<Candidate> candidates_;  // of each region
     std::vector<int> changed_, next_changed_;
+    std::vector<CellGrid::Part> waiting_;  // to be summed
+    std::vector<RegionSums> region_sums_;
+    std::vector<InverseDepthFit> fits_;
+    std::vector<std::uint16_t> order_, new_label_;
     ShapeTracer tracer_;
 };
 
-/// Standard deviation of inverse depth that a standard deviation of depth means.
-double inverse_depth_sigma(double sigma, double z) {
-    return sigma / (z * z);
-}
-
-void CellSegmenter::fit_cells(const CameraInfo& camera) {
-    map_.columns = grid_.columns();
-    map_.rows = grid_.rows();
-    map_.cell_x = grid_.cell_px() / camera.depth.fx;
-    map_.noise = camera.noise;
-    map_.cells.assign(static_cast<std::size_t>(grid_.size()), Cell{});
-    cell_sums_.resize(static_cast<std::size_t>(grid_.size()));
-    const double least = std::max(3.0, options_.min_fill * grid_.cell_px() * grid_.cell_px());
-    const double unit_sigma = 1 / camera.depth_units_per_metre / std::sqrt(12.0);  // of rounding to raw units
-    for (int i = 0; i < grid_.size(); ++i) {
-        const InverseDepthSums& sums = cell_sums_[static_cast<std::size_t>(i)] = grid_.inverse_depth_sums(i);
-        if (sums.n < least) continue;
-        Cell& cell = map_.cells[static_cast<std::size_t>(i)];
-        cell.fit = sums.fit();
-        if (!cell.fit.valid) continue;
-        cell.pixels = sums.n;
-        cell.z = 1 / cell.fit.w;
-        cell.sigma = std::hypot(camera.noise.sigma(cell.z), unit_sigma);
-        const double sigma = inverse_depth_sigma(cell.sigma, cell.z);
-        cell.sums = 1 / (sigma * sigma) * sums;
-        // At a grazing angle an error of the pixel's place becomes one of depth.
-        const double lateral = options_.lateral_px * std::hypot(cell.fit.plane.a / camera.depth.fx,
-                                                                cell.fit.plane.b / camera.depth.fy);
-        cell.planar = cell.fit.mse <= options_.planarity_sigmas * options_.planarity_sigmas *
-                                          (sigma * sigma + lateral * lateral);
-        cell.angle_error = std::atan(cell.sigma / cell.z / map_.cell_x);
-    }
+CellRules CellSegmenter::rules_for(const CameraInfo& camera) const {
+    const DepthRange range(camera);
+    CellRules rules;
+    rules.camera = camera.depth;
+    rules.units_per_metre = camera.depth_units_per_metre;
+    rules.low = range.low;
+    rules.high = range.high;
+    rules.noise = camera.noise;
+    rules.min_pixels = options_.min_fill * kCellPx * kCellPx;
+    rules.planarity_sigmas = options_.planarity_sigmas;
+    rules.lateral_px = options_.lateral_px;
+    rules.grow_m = options_.grow_m;
+    rules.grow_sigmas = options_.grow_sigmas;
+    rules.grow_angle_rad = options_.grow_angle_deg * std::numbers::pi / 180;
+    return rules;
 }
 
 bool CellSegmenter::offer(int cell, std::uint16_t label) {
-    const std::uint16_t own = grower_.label_of_cell()[static_cast<std::size_t>(cell)];
-    if (own != 0 && own != label) return false;
-    CellLabels& list = cell_labels_[static_cast<std::size_t>(cell)];
-    const auto end = list.label.begin() + static_cast<std::ptrdiff_t>(list.size);
+    CellLabels& list = cell_labels_[cell];
+    const auto end = list.label.begin() + list.size;
     if (list.size == list.label.size() || std::find(list.label.begin(), end, label) != end) return false;
-    list.label[list.size++] = label;
+    list.label[list.size] = label;
+    list.pixels[list.size++] = 0;
     return true;
 }
 
-void CellSegmenter::label_cell(int cell, const BorderBand& band, Image<std::uint16_t>& labels) {
-    std::array<Candidate, CellGrid::kMaxCandidates> candidates;
-    CellLabels& list = cell_labels_[static_cast<std::size_t>(cell)];
-    for (std::size_t k = 0; k < list.size; ++k)
-        candidates[k] = {list.label[k], grower_.planes()[list.label[k] - 1u]};
-    list.pixels = grid_.label(cell, std::span(candidates).first(list.size), band, labels);
+void CellSegmenter::label_cell(int cell, const BorderBand& band) {
+    CellLabels& list = cell_labels_[cell];
+    if (list.size == 1) {
+        grid_.label(cell, band, std::span(candidates_).subspan(list.label[0] - 1, 1), list.pixels.data());
+        return;
+    }
+    std::array<Candidate, kMaxCandidates> candidates;
+    for (std::size_t k = 0; k < list.size; ++k) candidates[k] = candidates_[list.label[k] - 1];
+    grid_.label(cell, band, std::span(candidates).first(list.size), list.pixels.data());
 }
 
-void CellSegmenter::label_pixels(const DepthImage& depth, const CameraInfo& camera,
-                                 Image<std::uint16_t>& labels) {
-    labels.width = depth.width;
-    labels.height = depth.height;
-    labels.pixels.assign(depth.pixels.size(), 0);
-    cell_labels_.assign(static_cast<std::size_t>(grid_.size()), CellLabels{});
-
-    // A cell of a region keeps to that region, and offers its label to the eight cells around it; another
-    // cell where enough pixels took a label offers it on to its four neighbours.
-    const BorderBand band{options_.thickness_m, options_.thickness_sigmas, camera.noise};
+void CellSegmenter::offer_to_neighbours() {
+    // A cell of a region keeps to that region, and offers its label to the eight cells around it.
+    const std::vector<std::uint16_t>& labels = grower_.label_of_cell();
     const int columns = grid_.columns(), rows = grid_.rows();
-    for (int y = 0; y < rows; ++y) {
-        for (int x = 0; x < columns; ++x) {
-            const std::uint16_t label = grower_.label_of_cell()[static_cast<std::size_t>(y * columns + x)];
-            if (label == 0) continue;
-            for (int ny = std::max(0, y - 1); ny <= std::min(rows - 1, y + 1); ++ny) {
-                for (int nx = std::max(0, x - 1); nx <= std::min(columns - 1, x + 1); ++nx)
-                    offer(ny * columns + nx, label);
+    cell_labels_.resize(static_cast<std::size_t>(grid_.size()));
+    changed_.clear();
+    for (int y = 0, i = 0; y < rows; ++y) {
+        for (int x = 0; x < columns; ++x, ++i) {
+            CellLabels& list = cell_labels_[i];
+            list.size = 0;
+            if (labels[i] != 0) {
+                list.size = 1;
+                list.label[0] = labels[i];
+            } else {
+                for (int ny = std::max(0, y - 1); ny <= std::min(rows - 1, y + 1); ++ny) {
+                    for (int nx = std::max(0, x - 1); nx <= std::min(columns - 1, x + 1); ++nx) {
+                        const std::uint16_t label = labels[ny * columns + nx];
+                        if (label != 0) offer(i, label);
+                    }
+                }
+            }
+            if (list.size > 0) {
+                changed_.push_back(i);
+            } else {
+                grid_.clear(i);
             }
         }
     }
-    changed_.clear();
-    for (int i = 0; i < grid_.size(); ++i) {
-        if (cell_labels_[static_cast<std::size_t>(i)].size > 0) changed_.push_back(i);
-    }
-    constexpr int kRounds = 3;
-    const int enough = grid_.cell_px() * grid_.cell_px() / 4;
+}
+
+void CellSegmenter::label_pixels(const BorderBand& band) {
+    candidates_.clear();
+    for (const InverseDepthPlane& plane : grower_.planes())
+        candidates_.push_back(grid_.candidate(plane, static_cast<std::uint16_t>(candidates_.size() + 1)));
+    // A cell without region where enough pixels took a label offers it on to its four neighbours.
+    offer_to_neighbours();
+    const std::vector<std::uint16_t>& labels = grower_.label_of_cell();
+    const int columns = grid_.columns(), rows = grid_.rows();
+    const auto offer_on = [&](int cell, std::uint16_t label) {
+        if (labels[cell] == 0 && offer(cell, label)) next_changed_.push_back(cell);
+    };
+    constexpr int kRounds = 4;
+    constexpr int kEnough = kCellPx * kCellPx / 4;
     for (int round = 0; round < kRounds && !changed_.empty(); ++round) {
-        for (const int i : changed_) label_cell(i, band, labels);
+        for (const int i : changed_) label_cell(i, band);
         next_changed_.clear();
         for (const int i : changed_) {
-            if (grower_.label_of_cell()[static_cast<std::size_t>(i)] != 0) continue;  // has offered already
+            if (labels[i] != 0) continue;
             const int x = i % columns, y = i / columns;
-            const CellLabels& list = cell_labels_[static_cast<std::size_t>(i)];
+            const CellLabels& list = cell_labels_[i];
             for (std::size_t k = 0; k < list.size; ++k) {
-                if (list.pixels[k] < enough) continue;
-                const std::uint16_t label = list.label[k];
-                if (x > 0 && offer(i - 1, label)) next_changed_.push_back(i - 1);
-                if (x + 1 < columns && offer(i + 1, label)) next_changed_.push_back(i + 1);
-                if (y > 0 && offer(i - columns, label)) next_changed_.push_back(i - columns);
-                if (y + 1 < rows && offer(i + columns, label)) next_changed_.push_back(i + columns);
+                if (list.pixels[k] < kEnough) continue;
+                if (x > 0) offer_on(i - 1, list.label[k]);
+                if (x + 1 < columns) offer_on(i + 1, list.label[k]);
+                if (y > 0) offer_on(i - columns, list.label[k]);
+                if (y + 1 < rows) offer_on(i + columns, list.label[k]);
             }
         }
         std::sort(next_changed_.begin(), next_changed_.end());
@@ -157,56 +176,82 @@ void CellSegmenter::label_pixels(const DepthImage& depth, const CameraInfo& came
     }
 }
 
-void CellSegmenter::fit_regions(const CameraInfo& camera, Segmentation& out) {
-    struct Sums {
-        InverseDepthSums inverse_depth;
-        Moments moments;
-    };
-    std::vector<Sums> sums(grower_.planes().size());
+/// Adds the sums as they would be without noise, weighted by its variance. Inverse depth is what has
+/// symmetric errors, so that its reciprocal z is too large in the mean by `relative2` = (sigma / z)^2, and
+/// z^2 by three times that.
+void add_unbiased(PointSums& to, PointSums part, double relative2) {
+    const double first = 1 - relative2, second = 1 - 3 * relative2;
+    for (double* sum : {&part.x, &part.y, &part.z}) *sum *= first;
+    for (double* sum : {&part.xx, &part.xy, &part.xz, &part.yy, &part.yz, &part.zz}) *sum *= second;
+    to.add(1 / relative2, part);
+}
+
+void CellSegmenter::add_sums(const DepthNoise& noise, std::uint16_t label, const PointSums& part) {
+    const double z = part.zz / part.z, sigma = std::clamp(noise.sigma(z), 1e-6, 0.1 * z);
+    RegionSums& region = region_sums_[label - 1];
+    region.points += part;
+    add_unbiased(region.weighted, part, sigma * sigma / (z * z));
+}
+
+void CellSegmenter::sum_waiting(const DepthNoise& noise) {
+    std::array<PointSums, 8> sums;
+    grid_.sum(waiting_, sums.data());
+    for (std::size_t k = 0; k < waiting_.size(); ++k) add_sums(noise, waiting_[k].label, sums[k]);
+    waiting_.clear();
+}
+
+void CellSegmenter::sum_regions(const CameraInfo& camera) {
+    region_sums_.assign(grower_.planes().size(), {});
+    waiting_.clear();
     for (int i = 0; i < grid_.size(); ++i) {
-        const CellLabels& list = cell_labels_[static_cast<std::size_t>(i)];
-        const InverseDepthSums& whole = cell_sums_[static_cast<std::size_t>(i)];
+        const CellLabels& list = cell_labels_[i];
+        const PointSums& whole = grid_.sums()[i];
         for (std::size_t k = 0; k < list.size; ++k) {
             if (list.pixels[k] == 0) continue;
-            const std::uint16_t label = list.label[k];
-            const Candidate candidate{label, grower_.planes()[label - 1u]};
-            const InverseDepthSums part =
-                list.pixels[k] == whole.n ? whole : grid_.inverse_depth_sums(i, out.labels, candidate);
-            const double z = part.n / part.w;
-            const double sigma = inverse_depth_sigma(std::max(camera.noise.sigma(z), 1e-6), z);
-            sums[label - 1u].inverse_depth += 1 / (sigma * sigma) * part;
-            sums[label - 1u].moments += grid_.moments(i, out.labels, candidate);
+            if (list.pixels[k] == whole.n) {
+                add_sums(camera.noise, list.label[k], whole);
+                continue;
+            }
+            waiting_.push_back({i, list.label[k], grid_.depth_at(i, candidates_[list.label[k] - 1])});
+            if (waiting_.size() == 8) sum_waiting(camera.noise);
         }
     }
+    if (!waiting_.empty()) sum_waiting(camera.noise);
+}
 
-    std::vector<std::uint16_t> order;
-    std::vector<InverseDepthFit> fits(sums.size());
-    for (std::size_t r = 0; r < sums.size(); ++r) {
-        fits[r] = sums[r].inverse_depth.fit();
-        if (sums[r].moments.count >= min_pixels_ && fits[r].valid)
-            order.push_back(static_cast<std::uint16_t>(r));
+void CellSegmenter::make_regions(std::vector<PlanarRegion>& regions) {
+    order_.clear();
+    fits_.resize(region_sums_.size());
+    for (std::size_t r = 0; r < region_sums_.size(); ++r) {
+        fits_[r] = region_sums_[r].weighted.fit();
+        if (region_sums_[r].points.n >= min_pixels_ && fits_[r].valid)
+            order_.push_back(static_cast<std::uint16_t>(r));
     }
-    std::stable_sort(order.begin(), order.end(), [&](std::uint16_t a, std::uint16_t b) {
-        return sums[a].moments.count > sums[b].moments.count;
+    std::sort(order_.begin(), order_.end(), [&](std::uint16_t a, std::uint16_t b) {
+        return std::pair(-region_sums_[a].points.n, a) < std::pair(-region_sums_[b].points.n, b);
     });
-
-    std::vector<std::uint16_t> new_name(sums.size() + 1, 0);
-    out.regions.resize(order.size());
-    for (std::size_t k = 0; k < order.size(); ++k) {
-        PlanarRegion& region = out.regions[k];
-        region.plane = fits[order[k]].plane.plane();
-        region.moments = sums[order[k]].moments;
+    new_label_.assign(region_sums_.size() + 1, 0);
+    tracer_.recycle(regions);
+    regions.resize(order_.size());
+    for (std::size_t k = 0; k < order_.size(); ++k) {
+        PlanarRegion& region = regions[k];
+        region.plane = fits_[order_[k]].plane.plane();
+        region.moments = region_sums_[order_[k]].points.moments();
         const Eigen::Vector3d& n = region.plane.normal;
         const double offset = region.plane.signed_distance(region.moments.mean());
         region.rms = std::sqrt(std::max(0.0, n.dot(region.moments.covariance() * n)) + offset * offset);
-        new_name[order[k] + 1u] = static_cast<std::uint16_t>(k + 1);
+        new_label_[order_[k] + 1u] = static_cast<std::uint16_t>(k + 1);
     }
-    rename_labels(new_name, out.labels);
+    rename_labels();
 }
 
-void CellSegmenter::rename_labels(const std::vector<std::uint16_t>& new_name,
-                                  Image<std::uint16_t>& labels) const {
-    for (std::uint16_t& label : labels.pixels) label = new_name[label];
+void CellSegmenter::rename_labels() {
+    for (int i = 0; i < grid_.size(); ++i) {
+        const CellLabels& list = cell_labels_[i];
+        const auto end = list.label.begin() + list.size;
+        if (std::any_of(list.label.begin(), end, [&](std::uint16_t l) { return new_label_[l] != l; }))
+            grid_.rename(i, new_label_);
+    }
 }
 
 }  // namespace
@@ -218,8 +263,6 @@ void CellOptions::check(const std::string& prefix, FieldErrors& errors) const {
     const auto angle = [&](double value, const char* field) {
         errors.require(value > 0 && value < 90, prefix + field, value, "between 0 and 90, both exclusive");
     };
-    errors.require(cell_fraction > 0 && cell_fraction <= 1, prefix + "cell_fraction", cell_fraction,
-                   "greater than 0, at most 1");
     errors.require(min_region_fraction >= 0 && min_region_fraction <= 1, prefix + "min_region_fraction",
                    min_region_fraction, "0 to 1");
     errors.require(min_fill > 0 && min_fill <= 1, prefix + "min_fill", min_fill, "greater than 0, at most 1");
@@ -239,11 +282,11 @@ void CellOptions::check(const std::string& prefix, FieldErrors& errors) const {
     positive(thickness_sigmas, "thickness_sigmas");
 }
 
-std::unique_ptr<Segmenter> make_cell_segmenter(const CellOptions& options) {
+std::unique_ptr<Segmenter> make_cell_segmenter(const CellOptions& options, const CellKernels& kernels) {
     FieldErrors errors("cell options");
     options.check("", errors);
     errors.throw_if_any();
-    return std::make_unique<CellSegmenter>(options);
+    return std::make_unique<CellSegmenter>(options, kernels);
 }
 
 }  // namespace planemap

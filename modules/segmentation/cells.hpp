@@ -5,15 +5,15 @@
 #include <string>
 
 #include "core/validation.hpp"
+#include "segmentation/cell_kernels.hpp"
 #include "segmentation/segmenter.hpp"
 
 namespace planemap {
 
-/// The default method: planes are fitted to inverse depth in square cells of the image, grown over cells,
+/// The default method: planes are fitted to inverse depth in cells of 8 x 8 pixels, grown over cells,
 /// brought to pixel-sharp borders, and fitted again. Lengths that stand beside a number of sigmas are lower
 /// bounds: the tolerance at depth z is the larger of the length and that many times camera.noise.sigma(z).
 struct CellOptions {
-    double cell_fraction = 0.01875;        ///< side of a cell as a share of the image's width
     double min_region_fraction = 0.00325;  ///< smallest region as a share of the image's pixels
     double min_fill = 0.6;                 ///< share of a cell's pixels that must be valid for a fit
     double planarity_sigmas = 1.2;         ///< largest RMS of a planar cell
@@ -36,6 +36,7 @@ struct CellOptions {
 
 /// The cell-based segmenter. moments are those of the labelled pixels; plane is the fit to them weighted by
 /// the sensor's noise. Throws std::invalid_argument for bad options.
-std::unique_ptr<Segmenter> make_cell_segmenter(const CellOptions& options);
+std::unique_ptr<Segmenter> make_cell_segmenter(const CellOptions& options,
+                                               const CellKernels& kernels = best_cell_kernels());
 
 }  // namespace planemap

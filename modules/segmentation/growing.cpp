@@ -4,6 +4,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <numbers>
 
@@ -14,19 +16,49 @@ namespace {
 constexpr double kRadians = std::numbers::pi / 180;
 constexpr std::uint16_t kMaxRegions = 4096;
 
-/// The four neighbours in the order of the link bits; f(bit, index of the neighbour).
-template <typename F>
-void for_neighbours(const CellMap& map, int cell, F&& f) {
-    const int x = cell % map.columns, y = cell / map.columns;
-    if (x + 1 < map.columns) f(0, cell + 1);
-    if (y + 1 < map.rows) f(1, cell + map.columns);
-    if (x > 0) f(2, cell - 1);
-    if (y > 0) f(3, cell - map.columns);
+/// Steps to the four neighbours in the order of the link bits: right, down, left, up.
+std::array<int, 4> neighbour_steps(const CellMap& map) {
+    return {1, map.columns, -1, -map.columns};
 }
 
 /// Distance along the plane's normal, metres, that a difference of inverse depth at depth z means.
 double distance_of(double inverse_depth, double z, const InverseDepthPlane& plane) {
     return std::abs(inverse_depth) * z / plane.steepness();
+}
+
+/// A region's plane as cells are held against it.
+struct Target {
+    float a, b, c, steepness, nx, ny, nz;
+
+    explicit Target(const InverseDepthPlane& plane)
+        : a(static_cast<float>(plane.a)),
+          b(static_cast<float>(plane.b)),
+          c(static_cast<float>(plane.c)),
+          steepness(static_cast<float>(plane.steepness())),
+          nx(a / steepness),
+          ny(b / steepness),
+          nz(c / steepness) {}
+
+    bool accepts(const Cell& cell) const {
+        const float offset = cell.w - (a * cell.x + b * cell.y + c);
+        return std::abs(offset) <= cell.reach * steepness &&
+               nx * cell.nx + ny * cell.ny + nz * cell.nz >= cell.cos_limit;
+    }
+    /// Mean squared residual of w of the cell's pixels.
+    float mse_to(const Cell& cell) const {
+        const float offset = cell.w - (a * cell.x + b * cell.y + c), da = cell.a - a, db = cell.b - b;
+        return cell.mse + offset * offset + da * da * cell.xx + 2 * da * db * cell.xy + db * db * cell.yy;
+    }
+};
+
+/// What makes a cell's sums a part of a region's: its inverse depths weighted by 1 / variance.
+double weight(const Cell& cell) {
+    const double k = 1 / (static_cast<double>(cell.w) * static_cast<double>(cell.sigma));
+    return k * k;
+}
+
+float cosine(const Cell& a, const Cell& b) {
+    return a.nx * b.nx + a.ny * b.ny + a.nz * b.nz;
 }
 
 }  // namespace
@@ -35,6 +67,7 @@ RegionGrower::RegionGrower(const CellOptions& options) : options_(options) {}
 
 void RegionGrower::grow(const CellMap& map, double min_pixels) {
     label_of_cell_.assign(map.cells.size(), 0);
+    tried_.assign(map.cells.size(), 0);
     regions_.clear();
     find_links(map);
     rank_seeds(map);
@@ -48,76 +81,92 @@ void RegionGrower::grow(const CellMap& map, double min_pixels) {
 
 void RegionGrower::find_links(const CellMap& map) {
     links_.assign(map.cells.size(), 0);
-    for (int i = 0; i < static_cast<int>(map.cells.size()); ++i) {
-        const Cell& cell = map.cells[static_cast<std::size_t>(i)];
-        if (!cell.planar) continue;
-        for_neighbours(map, i, [&](int bit, int j) {
-            if (bit > 1) return;  // right and down; the others are the same links seen from the other end
-            const Cell& other = map.cells[static_cast<std::size_t>(j)];
-            if (!other.planar) return;
-            const double x = 0.5 * (cell.fit.x + other.fit.x), y = 0.5 * (cell.fit.y + other.fit.y);
-            const double step = cell.fit.plane.at(x, y) - other.fit.plane.at(x, y);
-            const double z = std::max(cell.z, other.z);
-            const double limit =
-                std::max(options_.step_m, options_.step_sigmas * std::max(cell.sigma, other.sigma));
-            // The nearer to frontal of the two decides: at a grazing angle a step looks small along the
-            // normal.
-            const double distance =
-                std::max(distance_of(step, z, cell.fit.plane), distance_of(step, z, other.fit.plane));
-            if (!(distance <= limit)) return;
-            links_[static_cast<std::size_t>(i)] |= static_cast<std::uint8_t>(1 << bit);
-            links_[static_cast<std::size_t>(j)] |= static_cast<std::uint8_t>(4 << bit);
-        });
+    turn_.assign(map.cells.size(), 0);
+    const auto step_m = static_cast<float>(options_.step_m),
+               sigmas = static_cast<float>(options_.step_sigmas);
+    const auto link = [&](int i, int j, int bit) {
+        const Cell &cell = map.cells[i], &other = map.cells[j];
+        if (!other.planar()) return;
+        // Both planes halfway between the cells' means.
+        const float dx = other.x - cell.x, dy = other.y - cell.y;
+        const float step = cell.w - other.w + 0.5f * ((cell.a + other.a) * dx + (cell.b + other.b) * dy);
+        // As a distance along the normal, |step| z / steepness. The nearer to frontal of the two decides: at
+        // a grazing angle a step looks small along the normal.
+        const float limit = std::max(step_m, sigmas * std::max(cell.sigma, other.sigma));
+        if (!(std::abs(step) * std::max(cell.per_steepness, other.per_steepness) <=
+              limit * std::min(cell.w, other.w)))
+            return;
+        links_[i] |= static_cast<std::uint8_t>(1 << bit);
+        links_[j] |= static_cast<std::uint8_t>(4 << bit);
+        const float turn = 1 - cosine(cell, other);
+        turn_[i] = std::max(turn_[i], turn);
+        turn_[j] = std::max(turn_[j], turn);
+    };
+    for (int y = 0, i = 0; y < map.rows; ++y) {
+        for (int x = 0; x < map.columns; ++x, ++i) {
+            if (!map.cells[i].planar()) continue;
+            if (x + 1 < map.columns) link(i, i + 1, 0);
+            if (y + 1 < map.rows) link(i, i + map.columns, 1);
+        }
     }
 }
 
 void RegionGrower::rank_seeds(const CellMap& map) {
-    // A seed is a cell with its linked neighbours; the flattest blocks with the most cells come first.
-    block_sums_.resize(map.cells.size());
-    ranking_.clear();
+    // Flat cells come first whose neighbours all continue them and lie the same way.
+    constexpr int kRanks = 64;
+    constexpr float kRanksPerPoint = 16;
+    std::array<int, kRanks + 1> count{};
+    rank_.resize(map.cells.size());
     for (int i = 0; i < static_cast<int>(map.cells.size()); ++i) {
-        const Cell& cell = map.cells[static_cast<std::size_t>(i)];
-        if (!cell.planar) continue;
-        InverseDepthSums sums = cell.sums;
-        int missing = 4;
-        for_neighbours(map, i, [&](int bit, int j) {
-            if ((links_[static_cast<std::size_t>(i)] >> bit & 1) == 0) return;
-            sums += map.cells[static_cast<std::size_t>(j)].sums;
-            --missing;
-        });
-        block_sums_[static_cast<std::size_t>(i)] = sums;
-        const InverseDepthFit fit = sums.fit();
-        if (!fit.valid) continue;
-        const double distance = distance_of(std::sqrt(fit.mse), cell.z, fit.plane);
-        ranking_.emplace_back(static_cast<float>(distance / cell.sigma + 0.5 * missing), i);
+        const Cell& cell = map.cells[i];
+        rank_[i] = kRanks;
+        if (!cell.planar()) continue;
+        const float sigma_w = cell.sigma * cell.w * cell.w;
+        const auto missing = static_cast<float>(4 - std::popcount(links_[i]));
+        const float points =
+            cell.mse / (sigma_w * sigma_w) + turn_[i] / (1 - cell.cos_limit) + 0.5f * missing;
+        rank_[i] = static_cast<std::uint8_t>(std::min(kRanksPerPoint * points, kRanks - 1.0f));
+        ++count[rank_[i] + 1];
     }
-    std::sort(ranking_.begin(), ranking_.end());
-    seeds_.clear();
-    for (const auto& [score, cell] : ranking_) seeds_.push_back(cell);
+    for (int k = 0; k < kRanks; ++k) count[k + 1] += count[k];
+    seeds_.resize(count[kRanks]);
+    for (int i = 0; i < static_cast<int>(map.cells.size()); ++i) {
+        if (rank_[i] < kRanks) seeds_[count[rank_[i]]++] = i;
+    }
 }
 
-bool RegionGrower::accepts(const InverseDepthPlane& plane, const Cell& cell) const {
-    const double limit = std::max(options_.grow_m, options_.grow_sigmas * cell.sigma);
-    const double offset = cell.fit.w - plane.at(cell.fit.x, cell.fit.y);
-    if (!(distance_of(offset, cell.z, plane) <= limit)) return false;
-    const double angle = std::min(options_.grow_angle_deg * kRadians + cell.angle_error, 1.4);
-    return plane.cosine(cell.fit.plane) >= std::cos(angle);
+InverseDepthFit RegionGrower::fit_around(const CellMap& map, int cell) const {
+    const std::array<int, 4> steps = neighbour_steps(map);
+    PointSums sums;
+    sums.add(weight(map.cells[cell]), map.sums[cell]);
+    for (int k = 0; k < 4; ++k) {
+        if ((links_[cell] >> k & 1) == 0) continue;
+        const int j = cell + steps[k];
+        sums.add(weight(map.cells[j]), map.sums[j]);
+    }
+    return sums.fit();
 }
 
 void RegionGrower::grow_from(const CellMap& map, int seed, double min_pixels) {
-    if (label_of_cell_[static_cast<std::size_t>(seed)] != 0 || regions_.size() >= kMaxRegions) return;
+    if (label_of_cell_[seed] != 0 || tried_[seed] != 0 || regions_.size() >= kMaxRegions) return;
     const auto label = static_cast<std::uint16_t>(regions_.size() + 1);
+    const std::array<int, 4> steps = neighbour_steps(map);
     Region region;
-    region.fit = block_sums_[static_cast<std::size_t>(seed)].fit();
-    if (!accepts(region.fit.plane, map.cells[static_cast<std::size_t>(seed)])) return;
+    region.fit = fit_around(map, seed);
+    if (!region.fit.valid) return;
+    Target target(region.fit.plane);
+    if (!target.accepts(map.cells[seed])) return;
 
     const auto add = [&](int i) {
-        const Cell& cell = map.cells[static_cast<std::size_t>(i)];
-        label_of_cell_[static_cast<std::size_t>(i)] = label;
-        region.sums += cell.sums;
-        region.pixels += cell.pixels;
+        label_of_cell_[i] = label;
+        region.sums.add(weight(map.cells[i]), map.sums[i]);
+        region.pixels += map.sums[i].n;
         ++region.cells;
         queue_.push_back(i);
+    };
+    const auto refit = [&] {
+        region.fit = region.sums.fit();
+        if (region.fit.valid) target = Target(region.fit.plane);
     };
     constexpr int kFirstFit = 5;  // cells; before that the seed's block is the better plane
     int next_fit = kFirstFit;
@@ -125,42 +174,45 @@ void RegionGrower::grow_from(const CellMap& map, int seed, double min_pixels) {
     add(seed);
     // The second pass looks again at neighbours that the plane of the first cells did not accept.
     for (int pass = 0; pass < 2; ++pass) {
-        for (std::size_t k = 0; k < queue_.size(); ++k) {
-            const int i = queue_[k];
-            for_neighbours(map, i, [&](int bit, int j) {
-                if ((links_[static_cast<std::size_t>(i)] >> bit & 1) == 0) return;
-                if (label_of_cell_[static_cast<std::size_t>(j)] != 0) return;
-                if (accepts(region.fit.plane, map.cells[static_cast<std::size_t>(j)])) add(j);
-            });
+        for (std::size_t next = 0; next < queue_.size(); ++next) {
+            const int i = queue_[next];
+            for (int k = 0; k < 4; ++k) {
+                const int j = i + steps[k];
+                if ((links_[i] >> k & 1) != 0 && label_of_cell_[j] == 0 && target.accepts(map.cells[j]))
+                    add(j);
+            }
             if (region.cells < next_fit) continue;
-            region.fit = region.sums.fit();
+            refit();
             next_fit = region.cells + 1 + region.cells / 8;
         }
-        if (region.cells >= kFirstFit) region.fit = region.sums.fit();
+        if (region.cells >= kFirstFit) refit();
     }
     if (region.pixels < min_pixels || !region.fit.valid) {
-        for (const int i : queue_) label_of_cell_[static_cast<std::size_t>(i)] = 0;
+        for (const int i : queue_) label_of_cell_[i] = 0, tried_[i] = 1;
         return;
     }
-    region.fit = region.sums.fit();
+    refit();
     regions_.push_back(region);
 }
 
 void RegionGrower::settle_borders(const CellMap& map) {
     // Early regions took cells that a later one fits better.
+    const std::array<int, 4> steps = neighbour_steps(map);
     for (int i = 0; i < static_cast<int>(map.cells.size()); ++i) {
-        const Cell& cell = map.cells[static_cast<std::size_t>(i)];
-        if (!cell.planar) continue;
-        std::uint16_t& label = label_of_cell_[static_cast<std::size_t>(i)];
-        double best = label == 0 ? 1e300 : cell.fit.mse_to(regions_[label - 1u].fit.plane);
+        std::uint16_t& label = label_of_cell_[i];
+        if (links_[i] == 0) continue;
+        const Cell& cell = map.cells[i];
+        float best = -1;
         std::uint16_t best_label = label;
-        for_neighbours(map, i, [&](int bit, int j) {
-            const std::uint16_t other = label_of_cell_[static_cast<std::size_t>(j)];
-            if (other == 0 || other == label || (links_[static_cast<std::size_t>(i)] >> bit & 1) == 0) return;
-            const InverseDepthPlane& plane = regions_[other - 1u].fit.plane;
-            const double mse = cell.fit.mse_to(plane);
-            if (mse < best && accepts(plane, cell)) best = mse, best_label = other;
-        });
+        for (int k = 0; k < 4; ++k) {
+            if ((links_[i] >> k & 1) == 0) continue;
+            const std::uint16_t other = label_of_cell_[i + steps[k]];
+            if (other == 0 || other == label) continue;
+            if (best < 0) best = label == 0 ? 1e30f : Target(regions_[label - 1].fit.plane).mse_to(cell);
+            const Target target(regions_[other - 1].fit.plane);
+            const float mse = target.mse_to(cell);
+            if (mse < best && target.accepts(cell)) best = mse, best_label = other;
+        }
         label = best_label;
     }
     resum(map);
@@ -170,9 +222,9 @@ void RegionGrower::resum(const CellMap& map) {
     for (Region& region : regions_) region = Region{};
     for (std::size_t i = 0; i < map.cells.size(); ++i) {
         if (label_of_cell_[i] == 0) continue;
-        Region& region = regions_[label_of_cell_[i] - 1u];
-        region.sums += map.cells[i].sums;
-        region.pixels += map.cells[i].pixels;
+        Region& region = regions_[label_of_cell_[i] - 1];
+        region.sums.add(weight(map.cells[i]), map.sums[i]);
+        region.pixels += map.sums[i].n;
         ++region.cells;
     }
     for (Region& region : regions_) region.fit = region.sums.fit();
@@ -235,7 +287,7 @@ double RegionGrower::merge_cost(const Touch& touch, const CellMap& map) const {
     const Region &a = regions_[touch.a - 1u], &b = regions_[touch.b - 1u];
     constexpr double kNever = 2;
     if (!a.fit.valid || !b.fit.valid) return kNever;
-    InverseDepthSums sums = a.sums;
+    PointSums sums = a.sums;
     sums += b.sums;
     const InverseDepthFit joint = sums.fit();
     if (!joint.valid) return kNever;
@@ -287,10 +339,22 @@ void RegionGrower::merge_regions(const CellMap& map) {
     }
 }
 
+void RegionGrower::gather_members() {
+    first_.assign(regions_.size() + 2, 0);
+    for (const std::uint16_t label : label_of_cell_) ++first_[label + 1];
+    for (std::size_t r = 1; r < first_.size(); ++r) first_[r] += first_[r - 1];
+    members_.resize(label_of_cell_.size());
+    for (int i = 0; i < static_cast<int>(label_of_cell_.size()); ++i)
+        members_[first_[label_of_cell_[i]]++] = i;
+    for (std::size_t r = first_.size() - 1; r > 0; --r) first_[r] = first_[r - 1];
+    first_[0] = 0;
+}
+
 RegionGrower::Bend RegionGrower::bend_of(const CellMap& map, std::uint16_t label) const {
-    // Fits a quadratic to the cells' distances from the plane. Coordinates in the plane are divided by z, so
-    // that the equations are well scaled.
-    const Region& region = regions_[label - 1u];
+    // Fits a quadratic to the distances from the plane of so many cells at most. Coordinates in the plane are
+    // divided by z, so that the equations are well scaled.
+    constexpr int kCells = 100;
+    const Region& region = regions_[label - 1];
     const Plane plane = region.fit.plane.plane();
     const double z = 1 / region.fit.w;
     const Eigen::Vector3d centre = Eigen::Vector3d(region.fit.x, region.fit.y, 1) * z;
@@ -300,12 +364,14 @@ RegionGrower::Bend RegionGrower::bend_of(const CellMap& map, std::uint16_t label
     Vector6d right = Vector6d::Zero();
     Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
     double total = 0, squares = 0;
-    for (std::size_t i = 0; i < map.cells.size(); ++i) {
-        if (label_of_cell_[i] != label) continue;
-        const Cell& cell = map.cells[i];
-        const Eigen::Vector3d p = Eigen::Vector3d(cell.fit.x, cell.fit.y, 1) / cell.fit.w;
+    const int begin = first_[label], end = first_[label + 1], step = std::max(1, (end - begin) / kCells);
+    for (int member = begin; member < end; member += step) {
+        const Cell& cell = map.cells[members_[member]];
+        const Eigen::Vector3d p =
+            Eigen::Vector3f(cell.x, cell.y, 1).cast<double>() / static_cast<double>(cell.w);
         const Eigen::Vector3d q = (axes.transpose() * (p - centre)) / z;
-        const double e = plane.signed_distance(p), weight = cell.pixels / (cell.sigma * cell.sigma);
+        const double e = plane.signed_distance(p);
+        const double weight = map.sums[members_[member]].n / static_cast<double>(cell.sigma * cell.sigma);
         const Vector6d terms{1, q.x(), q.y(), q.x() * q.x(), q.x() * q.y(), q.y() * q.y()};
         normal_matrix += weight * terms * terms.transpose();
         right += weight * e * terms;
@@ -346,22 +412,29 @@ void RegionGrower::find_smooth_borders(const CellMap& map) {
     // too far. Counted where the cells' normals are sure enough to tell.
     borders_.assign(regions_.size(), Border{});
     const double limit = options_.grow_angle_deg * kRadians;
-    const double similar = std::cos(limit), turned = std::cos(0.5 * limit);
+    const auto similar = static_cast<float>(std::cos(limit)),
+               turned = static_cast<float>(std::cos(0.5 * limit));
+    const auto surest =
+        static_cast<float>(std::tan(limit) * map.cell_x);  // error of a normal: sigma w / cell_x
+    const std::array<int, 4> steps = neighbour_steps(map);
     for (int i = 0; i < static_cast<int>(map.cells.size()); ++i) {
-        const std::uint16_t label = label_of_cell_[static_cast<std::size_t>(i)];
+        const std::uint16_t label = label_of_cell_[i];
         if (label == 0) continue;
-        const Cell& cell = map.cells[static_cast<std::size_t>(i)];
-        for_neighbours(map, i, [&](int bit, int j) {
-            if (label_of_cell_[static_cast<std::size_t>(j)] == label) return;
-            Border& border = borders_[label - 1u];
+        const Cell& cell = map.cells[i];
+        const int x = i % map.columns, y = i / map.columns;
+        const std::array<bool, 4> exists{x + 1 < map.columns, y + 1 < map.rows, x > 0, y > 0};
+        for (int k = 0; k < 4; ++k) {
+            const int j = i + steps[k];
+            if (!exists[k] || label_of_cell_[j] == label) continue;
+            Border& border = borders_[label - 1];
             ++border.length;
-            if ((links_[static_cast<std::size_t>(i)] >> bit & 1) == 0) return;
-            const Cell& other = map.cells[static_cast<std::size_t>(j)];
-            if (other.angle_error > limit) return;
-            const InverseDepthPlane& plane = regions_[label - 1u].fit.plane;
-            if (plane.cosine(other.fit.plane) < turned && cell.fit.plane.cosine(other.fit.plane) > similar)
-                ++border.smooth;
-        });
+            if ((links_[i] >> k & 1) == 0) continue;
+            const Cell& other = map.cells[j];
+            if (other.sigma * other.w > surest) continue;
+            const Target target(regions_[label - 1].fit.plane);
+            const float to_region = target.nx * other.nx + target.ny * other.ny + target.nz * other.nz;
+            if (to_region < turned && cosine(cell, other) > similar) ++border.smooth;
+        }
     }
 }
 
@@ -402,6 +475,7 @@ void RegionGrower::drop_thin(const CellMap& map) {
 
 void RegionGrower::drop_curved(const CellMap& map) {
     find_smooth_borders(map);
+    gather_members();
     for (std::size_t r = 0; r < regions_.size(); ++r) {
         const auto label = static_cast<std::uint16_t>(r + 1);
         if (regions_[r].cells == 0) continue;
@@ -410,14 +484,21 @@ void RegionGrower::drop_curved(const CellMap& map) {
 }
 
 void RegionGrower::keep_large(double min_pixels) {
-    planes_.clear();
-    std::vector<std::uint16_t> new_label(regions_.size() + 1, 0);
-    for (std::size_t r = 0; r < regions_.size(); ++r) {
-        if (regions_[r].pixels < min_pixels || !regions_[r].fit.valid) continue;
-        planes_.push_back(regions_[r].fit.plane);
-        new_label[r + 1] = static_cast<std::uint16_t>(planes_.size());
+    // Largest first, as most will be when their pixels are known.
+    order_.clear();
+    for (int r = 0; r < static_cast<int>(regions_.size()); ++r) {
+        if (regions_[r].pixels >= min_pixels && regions_[r].fit.valid) order_.push_back(r);
     }
-    for (std::uint16_t& label : label_of_cell_) label = new_label[label];
+    std::sort(order_.begin(), order_.end(), [&](int a, int b) {
+        return std::pair(-regions_[a].pixels, a) < std::pair(-regions_[b].pixels, b);
+    });
+    planes_.clear();
+    new_label_.assign(regions_.size() + 1, 0);
+    for (const int r : order_) {
+        planes_.push_back(regions_[r].fit.plane);
+        new_label_[r + 1] = static_cast<std::uint16_t>(planes_.size());
+    }
+    for (std::uint16_t& label : label_of_cell_) label = new_label_[label];
 }
 
 }  // namespace planemap

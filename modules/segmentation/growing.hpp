@@ -4,30 +4,22 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "segmentation/cell_kernels.hpp"
 #include "segmentation/cells.hpp"
-#include "segmentation/inverse_depth.hpp"
+#include "segmentation/point_sums.hpp"
 
 namespace planemap {
 
-/// One square of the depth image and the plane fitted to it.
-struct Cell {
-    InverseDepthFit fit;
-    InverseDepthSums sums;   ///< of its pixels, weighted by 1 / variance of inverse depth
-    double pixels = 0;       ///< valid ones
-    double z = 0;            ///< mean depth, metres
-    double sigma = 0;        ///< of depth at z, metres
-    double angle_error = 0;  ///< of the fitted normal, radians
-    bool planar = false;     ///< enough pixels, within the sensor's noise of a plane
-};
-
-/// A grid of cells, row-major.
+/// A grid of cells, row-major. Refers to the cells.
 struct CellMap {
     int columns = 0, rows = 0;
     double cell_x = 0;  ///< width of a cell in normalised coordinates
     DepthNoise noise;   ///< of the sensor
-    std::vector<Cell> cells;
+    std::span<const Cell> cells;
+    std::span<const PointSums> sums;  ///< of each cell's pixels
 };
 
 /// Grows regions of cells that share a plane.
@@ -44,7 +36,7 @@ class RegionGrower {
 
   private:
     struct Region {
-        InverseDepthSums sums;
+        PointSums sums;  // weighted: the mean squared residual of w is in units of its variance
         InverseDepthFit fit;
         double pixels = 0;
         int cells = 0;
@@ -72,16 +64,17 @@ class RegionGrower {
 
     void find_links(const CellMap& map);
     void rank_seeds(const CellMap& map);
+    InverseDepthFit fit_around(const CellMap& map, int cell) const;
     void grow_from(const CellMap& map, int seed, double min_pixels);
     void settle_borders(const CellMap& map);
     void merge_regions(const CellMap& map);
     void drop_thin(const CellMap& map);
     void drop_curved(const CellMap& map);
     void remove(std::uint16_t label);
+    void gather_members();
     void find_smooth_borders(const CellMap& map);
     void keep_large(double min_pixels);
 
-    bool accepts(const InverseDepthPlane& plane, const Cell& cell) const;
     double merge_cost(const Touch& touch, const CellMap& map) const;
     Bend bend_of(const CellMap& map, std::uint16_t label) const;
     bool is_curved(const CellMap& map, std::uint16_t label) const;
@@ -92,14 +85,18 @@ class RegionGrower {
 
     CellOptions options_;
     std::vector<std::uint8_t> links_;  // bit k: neighbour k (right, down, left, up) continues the surface
-    std::vector<InverseDepthSums> block_sums_;
+    std::vector<float> turn_;          // 1 - cosine to the linked neighbour that lies most unlike the cell
+    std::vector<std::uint8_t> rank_;   // of each cell as a seed, 0: best
     std::vector<int> seeds_, queue_;
-    std::vector<std::pair<float, int>> ranking_;
+    std::vector<std::uint8_t> tried_;  // cells of a seed that came to nothing
     std::vector<std::uint16_t> label_of_cell_;
     std::vector<Region> regions_;
     std::vector<Touch> touching_;
     std::vector<Border> borders_;
-    std::vector<int> squares_;  // two by two cells, of each region
+    std::vector<int> squares_;          // two by two cells, of each region
+    std::vector<int> members_, first_;  // cells by region; where each region's begin
+    std::vector<int> order_;
+    std::vector<std::uint16_t> new_label_;
     std::vector<InverseDepthPlane> planes_;
 };
 

@@ -7,8 +7,6 @@ void add_flags(Flags& flags, SegmentationOptions& options, const std::string& pr
     flags.section("Segmentation", prefix);
     flags.add("method", options.method, "'cells', or 'ransac' for the paper's method");
     flags.add("seed", options.seed, "of the random samples of 'ransac'");
-    flags.add("cells-cell-fraction", options.cells.cell_fraction,
-              "side of a cell as a share of the image's width");
     flags.add("cells-min-region-fraction", options.cells.min_region_fraction,
               "smallest region as a share of the image's pixels");
     flags.add("cells-min-fill", options.cells.min_fill,

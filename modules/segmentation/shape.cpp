@@ -2,54 +2,66 @@
 #include "segmentation/shape.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
+#include <utility>
 
 namespace planemap {
 
 namespace {
 
-/// Number of a block's pixels with a label.
-int count(const Image<std::uint16_t>& labels, int u0, int v0, int u1, int v1, std::uint16_t label) {
-    int total = 0;
-    for (int v = v0; v < v1; ++v) {
-        const std::uint16_t* row = labels.row(v);
-        for (int u = u0; u < u1; ++u) total += row[u] == label;
-    }
-    return total;
-}
+/// A block of the label image; kSide > 0 is its width and height, which the compiler then knows.
+template <int kSide>
+struct Block {
+    const std::uint16_t* first;
+    std::ptrdiff_t stride;
+    int given_width, given_height;
 
-/// The label that more than half of a block's pixels carry, else 0.
-std::uint16_t majority(const Image<std::uint16_t>& labels, int u0, int v0, int u1, int v1) {
-    const int pixels = (u1 - u0) * (v1 - v0);
-    const std::uint16_t middle = labels((u0 + u1) / 2, (v0 + v1) / 2), corner = labels(u0, v0);
-    if (2 * count(labels, u0, v0, u1, v1, middle) > pixels) return middle;
-    if (corner != middle && 2 * count(labels, u0, v0, u1, v1, corner) > pixels) return corner;
-    std::uint16_t candidate = 0;
-    int votes = 0;  // Boyer and Moore: what outweighs all others together is left over
-    for (int v = v0; v < v1; ++v) {
-        const std::uint16_t* row = labels.row(v);
-        for (int u = u0; u < u1; ++u) {
-            if (votes == 0) candidate = row[u];
-            votes += row[u] == candidate ? 1 : -1;
+    int width() const { return kSide > 0 ? kSide : given_width; }
+    int height() const { return kSide > 0 ? kSide : given_height; }
+    std::uint16_t at(int u, int v) const { return first[v * stride + u]; }
+
+    bool uniform() const {
+        std::uint16_t changes = 0;
+        for (int v = 0; v < height(); ++v) {
+            for (int u = 0; u < width(); ++u) changes |= static_cast<std::uint16_t>(at(u, v) ^ at(0, 0));
         }
+        return changes == 0;
     }
-    return 2 * count(labels, u0, v0, u1, v1, candidate) > pixels ? candidate : std::uint16_t{0};
-}
+    int count(std::uint16_t label) const {
+        std::uint16_t total = 0;
+        for (int v = 0; v < height(); ++v) {
+            for (int u = 0; u < width(); ++u) total = static_cast<std::uint16_t>(total + (at(u, v) == label));
+        }
+        return total;
+    }
+    /// The label that more than half of the pixels carry, else 0.
+    std::uint16_t majority() const {
+        const int pixels = width() * height();
+        const std::uint16_t middle = at(width() / 2, height() / 2), corner = at(0, 0);
+        if (2 * count(middle) > pixels) return middle;
+        if (corner != middle && 2 * count(corner) > pixels) return corner;
+        std::uint16_t candidate = 0;
+        int votes = 0;  // Boyer and Moore: what outweighs all others together is left over
+        for (int v = 0; v < height(); ++v) {
+            for (int u = 0; u < width(); ++u) {
+                if (votes == 0) candidate = at(u, v);
+                votes += at(u, v) == candidate ? 1 : -1;
+            }
+        }
+        return 2 * count(candidate) > pixels ? candidate : std::uint16_t{0};
+    }
+};
 
-/// The midpoints of the unit edges of a ring with corners on the integer grid. A staircase becomes a straight
-/// line, and parts of the boundary that are not neighbours end up at least sqrt(1/2) apart, so that a
-/// simplification within half of that cannot make them cross.
-Ring edge_midpoints(const Ring& corners) {
-    Ring midpoints;
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-        const Eigen::Vector2d &a = corners[i], &b = corners[(i + 1) % corners.size()];
-        const double length = (b - a).lpNorm<1>();
-        const Eigen::Vector2d step = (b - a) / length;
-        // Only the ends of a straight edge: the midpoints between them are collinear.
-        midpoints.push_back(a + 0.5 * step);
-        if (length > 1.5) midpoints.push_back(b - 0.5 * step);
-    }
-    return midpoints;
+/// As four labels are compared at once.
+template <>
+bool Block<4>::uniform() const {
+    std::array<std::uint64_t, 4> rows;
+    for (std::size_t v = 0; v < 4; ++v)
+        std::memcpy(&rows[v], first + static_cast<std::ptrdiff_t>(v) * stride, sizeof(rows[v]));
+    const std::uint64_t all = *first * std::uint64_t{0x0001000100010001};
+    return ((rows[0] ^ all) | (rows[1] ^ all) | (rows[2] ^ all) | (rows[3] ^ all)) == 0;
 }
 
 /// Where the ray through a pixel meets the plane; the point of the plane nearest to the ray's point at
@@ -71,77 +83,135 @@ DepthRange::DepthRange(const CameraInfo& camera) {
     high = static_cast<std::uint16_t>(std::min(last, 65534.0));
 }
 
-void ShapeTracer::find_changes(const Image<std::uint16_t>& labels, int v0, int v1) {
-    const auto width = static_cast<std::size_t>(labels.width);
-    changes_.assign(width, 0);
-    const std::uint16_t* top = labels.row(v0);
-    for (std::size_t u = 0; u + 1 < width; ++u) changes_[u] = top[u] ^ top[u + 1];
-    for (int v = v0 + 1; v < v1; ++v) {
-        const std::uint16_t* row = labels.row(v);
-        for (std::size_t u = 0; u < width; ++u) changes_[u] |= static_cast<std::uint16_t>(row[u] ^ top[u]);
+void ShapeTracer::recycle(std::vector<PlanarRegion>& regions) {
+    for (PlanarRegion& region : regions) {
+        std::vector<Ring>& rings = region.outline.rings;
+        for (Ring& ring : rings) spare_rings_.push_back(std::move(ring));
+        rings.clear();
+        spare_lists_.push_back(std::move(rings));
+        rings = {};
     }
 }
 
-void ShapeTracer::find_blocks(const Image<std::uint16_t>& labels, std::size_t regions) {
-    constexpr int kBlocksAcross = 160;
-    block_px_ = std::max(1, (labels.width + kBlocksAcross / 2) / kBlocksAcross);
-    blocks_.width = (labels.width + block_px_ - 1) / block_px_;
-    blocks_.height = (labels.height + block_px_ - 1) / block_px_;
-    blocks_.pixels.resize(static_cast<std::size_t>(blocks_.width) * static_cast<std::size_t>(blocks_.height));
-    extents_.assign(regions, {blocks_.width, blocks_.height, 0, 0});
-    for (int y = 0; y < blocks_.height; ++y) {
-        const int v0 = y * block_px_, v1 = std::min(v0 + block_px_, labels.height);
-        find_changes(labels, v0, v1);
-        for (int x = 0; x < blocks_.width; ++x) {
-            const int u0 = x * block_px_, u1 = std::min(u0 + block_px_, labels.width);
-            std::uint16_t changes = 0;
-            for (int u = u0; u < u1; ++u) changes |= changes_[static_cast<std::size_t>(u)];
-            const std::uint16_t label = changes == 0 ? labels(u0, v0) : majority(labels, u0, v0, u1, v1);
-            blocks_(x, y) = label;
-            if (label == 0) continue;
-            Extent& extent = extents_[label - 1u];
-            extent.left = std::min(extent.left, x);
-            extent.right = std::max(extent.right, x + 1);
-            extent.top = std::min(extent.top, y);
-            extent.bottom = std::max(extent.bottom, y + 1);
+template <int kSide>
+void ShapeTracer::find_blocks(const Image<std::uint16_t>& labels) {
+    for (int y = 0; y < blocks_.height - 2; ++y) {
+        std::uint16_t* out = blocks_.row(y + 1) + 1;
+        const int v = y * block_px_, height = std::min(block_px_, labels.height - v);
+        for (int x = 0; x < blocks_.width - 2; ++x) {
+            const int u = x * block_px_, width = std::min(block_px_, labels.width - u);
+            const std::uint16_t* first = labels.row(v) + u;
+            const Block<kSide> whole{first, labels.width, block_px_, block_px_};
+            if (width < block_px_ || height < block_px_) {
+                out[x] = Block<0>{first, labels.width, width, height}.majority();
+            } else {
+                out[x] = whole.uniform() ? *first : whole.majority();
+            }
         }
     }
 }
 
-void ShapeTracer::shape(const PinholeCamera& camera, double farthest_m, std::uint16_t label,
-                        PlanarRegion& region) {
-    const Extent& extent = extents_[label - 1u];
-    mask_.width = std::max(0, extent.right - extent.left);
-    mask_.height = std::max(0, extent.bottom - extent.top);
-    mask_.cells.assign(mask_.index(0, mask_.height), 0);
-    for (int y = 0; y < mask_.height; ++y) {
-        const std::uint16_t* row = blocks_.row(extent.top + y) + extent.left;
-        for (int x = 0; x < mask_.width; ++x) mask_.cells[mask_.index(x, y)] = row[x] == label;
+void ShapeTracer::find_blocks(const Image<std::uint16_t>& labels, int block_px) {
+    block_px_ = block_px;
+    blocks_.width = (labels.width + block_px - 1) / block_px + 2;
+    blocks_.height = (labels.height + block_px - 1) / block_px + 2;
+    blocks_.pixels.assign(static_cast<std::size_t>(blocks_.width) * static_cast<std::size_t>(blocks_.height),
+                          0);
+    switch (block_px) {
+        case 2:
+            return find_blocks<2>(labels);
+        case 4:
+            return find_blocks<4>(labels);
+        case 8:
+            return find_blocks<8>(labels);
+        default:
+            return find_blocks<0>(labels);
     }
+}
 
-    region.outline = trace(mask_);
-    for (Ring& ring : region.outline.rings) ring = edge_midpoints(ring);
-    constexpr double kTolerance = 0.35;  // of a block, see edge_midpoints()
-    region.outline = simplified(region.outline, kTolerance);
+void ShapeTracer::follow(int x, int y, std::uint16_t label) {
+    // From corner to corner of the blocks with the label to the left of the way (x right, y up), starting
+    // along the upper edge (smallest y) of block (x, y). The ring goes through the midpoints of the edges: a
+    // staircase becomes a straight line, and parts of the boundary that are not neighbours end up at least
+    // sqrt(1/2) apart, so that a simplification within half of that cannot make them cross. Of a straight run
+    // only the midpoints of the first and the last edge are kept.
+    constexpr std::array<int, 4> kDx{1, 0, -1, 0}, kDy{0, 1, 0, -1};
+    // The blocks in front of a corner, to the left and to the right of the way.
+    constexpr std::array<int, 4> kLeftX{0, -1, -1, 0}, kLeftY{0, 0, -1, -1};
+    constexpr std::array<int, 4> kRightX{0, 0, -1, -1}, kRightY{-1, 0, 0, -1};
+    ring_.clear();
+    const std::uint16_t* blocks = blocks_.pixels.data();
+    const int width = blocks_.width, start_x = x, start_y = y;
+    int direction = 0, run = 0;
+    do {
+        if (direction == 0) followed_[y * width + x] = 1;
+        const Eigen::Vector2d middle(x + 0.5 * kDx[direction], y + 0.5 * kDy[direction]);
+        x += kDx[direction];
+        y += kDy[direction];
+        const bool left = blocks[(y + kLeftY[direction]) * width + x + kLeftX[direction]] == label;
+        const bool right = blocks[(y + kRightY[direction]) * width + x + kRightX[direction]] == label;
+        // Blocks that touch at a corner stay apart.
+        const int turn = !left ? 1 : !right ? 0 : 3;
+        if (run == 0 || turn != 0) ring_.push_back(middle);
+        run = turn == 0 ? run + 1 : 0;
+        direction = (direction + turn) % 4;
+    } while (x != start_x || y != start_y || direction != 0);
+}
 
+void ShapeTracer::add_ring(std::vector<PlanarRegion>& regions, std::uint16_t label) {
+    constexpr double kTolerance = 0.35;  // of a block, see follow()
+    simplifier_.simplify(ring_, kTolerance);
+    if (ring_.empty()) return;
+    longest_ring_ = std::max(longest_ring_, ring_.size());
+    Ring ring;
+    if (!spare_rings_.empty()) {
+        ring = std::move(spare_rings_.back());
+        spare_rings_.pop_back();
+    }
+    ring.reserve(longest_ring_);
+    ring.assign(ring_.begin(), ring_.end());
+    std::vector<Ring>& rings = regions[label - 1u].outline.rings;
+    if (rings.capacity() == 0 && !spare_lists_.empty()) {
+        rings = std::move(spare_lists_.back());
+        spare_lists_.pop_back();
+    }
+    rings.push_back(std::move(ring));
+}
+
+void ShapeTracer::trace_rings(std::vector<PlanarRegion>& regions) {
+    // Every ring has an upper edge of some block; the first in reading order starts a straight run.
+    followed_.assign(blocks_.pixels.size(), 0);
+    for (int y = 1; y < blocks_.height - 1; ++y) {
+        const std::uint16_t *row = blocks_.row(y), *above = blocks_.row(y - 1);
+        const std::uint8_t* followed = followed_.data() + static_cast<std::ptrdiff_t>(y) * blocks_.width;
+        for (int x = 1; x < blocks_.width - 1; ++x) {
+            if (row[x] == 0 || row[x] == above[x] || followed[x] != 0) continue;
+            follow(x, y, row[x]);
+            add_ring(regions, row[x]);
+        }
+    }
+}
+
+void ShapeTracer::shape(const CameraInfo& camera, PlanarRegion& region) {
     const Eigen::Matrix3d axes = principal_axes(region.plane, region.moments);
-    std::vector<Eigen::Vector3d> corners;
+    const Eigen::Vector2d last(camera.depth.width - 0.5, camera.depth.height - 0.5);
+    corners_.clear();
     for (const Ring& ring : region.outline.rings) {
         for (const Eigen::Vector2d& corner : ring) {
-            // Pixel centres are at integers, so a block's left edge lies half a pixel before its first pixel.
+            // Pixel centres are at integers, so a block's left edge lies half a pixel before its first pixel;
+            // and the first block is one of 0 that is not in the image.
             const Eigen::Vector2d pixel =
-                (corner + Eigen::Vector2d(extent.left, extent.top)) * block_px_ - Eigen::Vector2d(0.5, 0.5);
-            const Eigen::Vector2d inside =
-                pixel.cwiseMin(Eigen::Vector2d(camera.width - 0.5, camera.height - 0.5));
-            corners.push_back(ray_on_plane(camera, region.plane, inside, farthest_m));
+                (corner.array() - 1).matrix() * block_px_ - Eigen::Vector2d(0.5, 0.5);
+            corners_.push_back(
+                ray_on_plane(camera.depth, region.plane, pixel.cwiseMin(last), 2 * camera.depth_max_m));
         }
     }
-    if (corners.empty()) corners.push_back(region.plane.project(region.moments.mean()));
-    region.box = bound(axes, corners);
+    if (corners_.empty()) corners_.push_back(region.plane.project(region.moments.mean()));
+    region.box = bound(axes, corners_);
     region.box.half_extents.z() = 3 * region.rms;
 
     const Pose box_from_camera = region.box.frame_from_box.inverse(Eigen::Isometry);
-    auto corner = corners.begin();
+    auto corner = corners_.begin();
     for (Ring& ring : region.outline.rings) {
         for (Eigen::Vector2d& vertex : ring) vertex = (box_from_camera * *corner++).head<2>();
         // Image rows grow downwards, the box's y axis does not: turn outer rings counter-clockwise again.
@@ -151,10 +221,12 @@ void ShapeTracer::shape(const PinholeCamera& camera, double farthest_m, std::uin
 
 void ShapeTracer::trace_all(const Image<std::uint16_t>& labels, const CameraInfo& camera,
                             std::vector<PlanarRegion>& regions) {
+    recycle(regions);
     if (regions.empty()) return;
-    find_blocks(labels, regions.size());
-    for (std::size_t i = 0; i < regions.size(); ++i)
-        shape(camera.depth, 2 * camera.depth_max_m, static_cast<std::uint16_t>(i + 1), regions[i]);
+    constexpr int kBlocksAcross = 160;
+    find_blocks(labels, std::max(1, (labels.width + kBlocksAcross / 2) / kBlocksAcross));
+    trace_rings(regions);
+    for (PlanarRegion& region : regions) shape(camera, region);
 }
 
 }  // namespace planemap

@@ -24,23 +24,30 @@ struct DepthRange {
 /// than a grid cell are left out. The box holds the outline, and 3 RMS on either side of the plane.
 class ShapeTracer {
   public:
+    /// Takes the memory of old outlines for the next ones. Call it before regions are dropped.
+    void recycle(std::vector<PlanarRegion>& regions);
+
     void trace_all(const Image<std::uint16_t>& labels, const CameraInfo& camera,
                    std::vector<PlanarRegion>& regions);
 
   private:
-    struct Extent {
-        int left, top, right, bottom;  // blocks, right and bottom exclusive
-    };
-    /// Marks the columns of rows v0 to v1 - 1 where labels differ from each other or from the next column.
-    void find_changes(const Image<std::uint16_t>& labels, int v0, int v1);
-    void find_blocks(const Image<std::uint16_t>& labels, std::size_t regions);
-    void shape(const PinholeCamera& camera, double farthest_m, std::uint16_t label, PlanarRegion& region);
+    template <int kSide>
+    void find_blocks(const Image<std::uint16_t>& labels);
+    void find_blocks(const Image<std::uint16_t>& labels, int block_px);
+    void trace_rings(std::vector<PlanarRegion>& regions);
+    void follow(int x, int y, std::uint16_t label);
+    void add_ring(std::vector<PlanarRegion>& regions, std::uint16_t label);
+    void shape(const CameraInfo& camera, PlanarRegion& region);
 
     int block_px_ = 1;
-    std::vector<std::uint16_t> changes_;
-    Image<std::uint16_t> blocks_;  // label of most pixels of each block, or 0
-    std::vector<Extent> extents_;  // of each region
-    Mask mask_;
+    Image<std::uint16_t> blocks_;         // label of most pixels of each block, or 0; a block of 0 around
+    std::vector<std::uint8_t> followed_;  // blocks whose upper edge is part of a ring
+    Ring ring_;                           // being made, in blocks
+    RingSimplifier simplifier_;
+    std::vector<Eigen::Vector3d> corners_;
+    std::vector<Ring> spare_rings_;
+    std::vector<std::vector<Ring>> spare_lists_;
+    std::size_t longest_ring_ = 0;
 };
 
 }  // namespace planemap

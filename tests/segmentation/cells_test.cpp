@@ -186,7 +186,7 @@ TEST(CellsTest, RefusesBadOptions) {
     options.thickness_m = 0;
     EXPECT_THROW(make_cell_segmenter(options), std::invalid_argument);
     options = {};
-    options.cell_fraction = std::nan("");
+    options.min_fill = std::nan("");
     EXPECT_THROW(make_cell_segmenter(options), std::invalid_argument);
     options = {};
     options.lateral_px = -1;

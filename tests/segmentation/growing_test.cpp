@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <set>
 
@@ -12,43 +14,60 @@ namespace {
 constexpr double kCell = 0.02;  // side, normalised coordinates
 constexpr double kPixels = 100;
 
+/// A map with its cells.
+struct OwnedMap {
+    std::vector<Cell> cells;
+    std::vector<PointSums> sums;
+    int columns = 0, rows = 0;
+
+    CellMap map() const { return {columns, rows, kCell, DepthNoise{}, cells, sums}; }
+};
+
 /// A map whose cell (column, row) lies exactly on the plane that `plane_of` names; one with steepness 0 is
 /// not planar.
-CellMap make_map(int columns, int rows, const std::function<InverseDepthPlane(int, int)>& plane_of) {
-    CellMap map;
-    map.columns = columns;
-    map.rows = rows;
-    map.cell_x = kCell;
+OwnedMap make_map(int columns, int rows, const std::function<InverseDepthPlane(int, int)>& plane_of) {
+    OwnedMap owned;
+    owned.columns = columns;
+    owned.rows = rows;
     for (int y = 0; y < rows; ++y) {
         for (int x = 0; x < columns; ++x) {
-            Cell& cell = map.cells.emplace_back();
+            Cell& cell = owned.cells.emplace_back();
+            PointSums& sums = owned.sums.emplace_back();
             const InverseDepthPlane plane = plane_of(x, y);
             if (plane.steepness() == 0) continue;
-            InverseDepthSums sums;
             for (const double dx : {-0.3, 0.3}) {
                 for (const double dy : {-0.3, 0.3}) {
                     const double px = kCell * (x - 0.5 * columns + dx), py = kCell * (y - 0.5 * rows + dy);
-                    const double w = plane.at(px, py);
-                    sums += {1, px, py, px * px, px * py, py * py, w, px * w, py * w, w * w};
+                    const double Z = 1 / plane.at(px, py), X = px * Z, Y = py * Z, k = kPixels / 4;
+                    sums.add(k, {1, X, Y, Z, X * X, X * Y, X * Z, Y * Y, Y * Z, Z * Z});
                 }
             }
-            cell.fit = sums.fit();
-            cell.pixels = kPixels;
-            cell.z = 1 / cell.fit.w;
-            cell.sigma = map.noise.sigma(cell.z);
-            const double sigma = cell.sigma / (cell.z * cell.z);
-            cell.sums = kPixels / 4 / (sigma * sigma) * sums;
-            cell.angle_error = 0.05;
-            cell.planar = true;
+            const InverseDepthFit fit = sums.fit();
+            const Eigen::Vector3f normal = -fit.plane.plane().normal.cast<float>();
+            cell.x = static_cast<float>(fit.x);
+            cell.y = static_cast<float>(fit.y);
+            cell.w = static_cast<float>(fit.w);
+            cell.sigma = static_cast<float>(DepthNoise{}.sigma(1 / fit.w));
+            cell.reach = std::max(0.01f, 1.5f * cell.sigma) * cell.w;
+            cell.nx = normal.x();
+            cell.ny = normal.y();
+            cell.nz = normal.z();
+            cell.cos_limit = std::cos(0.3f);
+            cell.a = static_cast<float>(fit.plane.a);
+            cell.b = static_cast<float>(fit.plane.b);
+            cell.xx = static_cast<float>(fit.xx);
+            cell.xy = static_cast<float>(fit.xy);
+            cell.yy = static_cast<float>(fit.yy);
+            cell.per_steepness = static_cast<float>(1 / fit.plane.steepness());
         }
     }
-    return map;
+    return owned;
 }
 
-std::size_t regions_of(const CellMap& map, double min_pixels = 5 * kPixels) {
+std::size_t regions_of(const OwnedMap& owned, double min_pixels = 5 * kPixels) {
     RegionGrower grower{CellOptions{}};
-    grower.grow(map, min_pixels);
-    EXPECT_EQ(grower.label_of_cell().size(), map.cells.size());
+    grower.grow(owned.map(), min_pixels);
+    EXPECT_EQ(grower.label_of_cell().size(), owned.cells.size());
     for (const std::uint16_t label : grower.label_of_cell()) EXPECT_LE(label, grower.planes().size());
     return grower.planes().size();
 }
@@ -60,7 +79,8 @@ TEST(GrowingTest, OnePlaneIsOneRegion) {
 TEST(GrowingTest, RecoversThePlane) {
     RegionGrower grower{CellOptions{}};
     const InverseDepthPlane plane{0.2, -0.1, 0.5};
-    grower.grow(make_map(20, 15, [&](int, int) { return plane; }), 100);
+    const OwnedMap owned = make_map(20, 15, [&](int, int) { return plane; });
+    grower.grow(owned.map(), 100);
     ASSERT_EQ(grower.planes().size(), 1u);
     EXPECT_NEAR(grower.planes()[0].a, plane.a, 1e-9);
     EXPECT_NEAR(grower.planes()[0].b, plane.b, 1e-9);
@@ -107,7 +127,7 @@ TEST(GrowingTest, SmallRegionsAreDropped) {
 TEST(GrowingTest, NothingPlanarOrNoCells) {
     EXPECT_EQ(regions_of(make_map(20, 15, [](int, int) { return InverseDepthPlane{}; })), 0u);
     EXPECT_EQ(regions_of(make_map(1, 1, [](int, int) { return InverseDepthPlane{0, 0, 0.5}; }), 0), 1u);
-    EXPECT_EQ(regions_of(CellMap{}), 0u);
+    EXPECT_EQ(regions_of(OwnedMap{}), 0u);
 }
 
 }  // namespace

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A plane in inverse depth: with the normalised image coordinates x = (u - cx) / fx, y = (v - cy) / fy, the
-// plane n.p + d = 0 is 1/z = a x + b y + c, linear in what a structured-light sensor measures.
+// plane n.p + d = 0 is 1/z = a x + b y + c, linear in what a structured-light sensor measures. It is fitted
+// to sums of points up to second order, the same that a region's moments are made of.
 #pragma once
 
 #include <cmath>
 
+#include "core/moments.hpp"
 #include "core/plane.hpp"
 
 namespace planemap {
@@ -27,7 +29,7 @@ struct InverseDepthPlane {
     }
 };
 
-/// A fit to weighted points (x, y, w = 1/z), with the points' second central moments.
+/// A fit to points (x, y, w = 1/z), each weighted by z^2, with the points' second central moments.
 struct InverseDepthFit {
     InverseDepthPlane plane;
     double x = 0, y = 0, w = 0;     ///< weighted mean
@@ -42,20 +44,20 @@ struct InverseDepthFit {
     }
 };
 
-/// Weighted sums of points (x, y, w = 1/z); they add up over cells and regions.
-struct InverseDepthSums {
-    double n = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0, w = 0, xw = 0, yw = 0, ww = 0;
+/// Weighted sums of points (X, Y, Z) in metres, camera frame. Plain data, as the kernels write it.
+struct PointSums {
+    double n = 0, x = 0, y = 0, z = 0, xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
 
-    InverseDepthSums& operator+=(const InverseDepthSums& o) {
-        n += o.n, x += o.x, y += o.y, xx += o.xx, xy += o.xy, yy += o.yy;
-        w += o.w, xw += o.xw, yw += o.yw, ww += o.ww;
+    PointSums& operator+=(const PointSums& o) { return add(1, o); }
+    /// Adds k times the sums.
+    PointSums& add(double k, const PointSums& o) {
+        n += k * o.n, x += k * o.x, y += k * o.y, z += k * o.z, xx += k * o.xx;
+        xy += k * o.xy, xz += k * o.xz, yy += k * o.yy, yz += k * o.yz, zz += k * o.zz;
         return *this;
     }
-    friend InverseDepthSums operator*(double k, const InverseDepthSums& s) {
-        return {k * s.n,  k * s.x, k * s.y,  k * s.xx, k * s.xy,
-                k * s.yy, k * s.w, k * s.xw, k * s.yw, k * s.ww};
-    }
-    /// Weighted least squares in closed form.
+    Moments moments() const;
+    /// The plane that minimises the sum of (1 - z (a x + b y + c))^2: least squares of inverse depth,
+    /// weighted by z^2, whose regressors, the image coordinates, are free of noise. In closed form.
     InverseDepthFit fit() const;
 };
 

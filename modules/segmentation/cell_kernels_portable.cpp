@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#define PLANEMAP_PORTABLE_LANES
+#include "segmentation/cell_kernels.inl"
+
+namespace planemap {
+
+const CellKernels& portable_cell_kernels() {
+    static constexpr CellKernels kKernels{"portable", fit, label, sum};
+    return kKernels;
+}
+
+}  // namespace planemap
