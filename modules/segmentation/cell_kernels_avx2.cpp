@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Compiled for AVX2 on x86 (see CMakeLists.txt), and not called where the machine lacks it.
+#ifdef __AVX2__
 #include "segmentation/cell_kernels.inl"
+#else
+#include "segmentation/cell_kernels.hpp"
+#endif
 
 namespace planemap {
 

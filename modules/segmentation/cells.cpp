@@ -11,11 +11,14 @@
 
 #include "segmentation/cell_grid.hpp"
 #include "segmentation/growing.hpp"
+#include "segmentation/merging.hpp"
 #include "segmentation/shape.hpp"
 
 namespace planemap {
 
 namespace {
+
+constexpr double kRadians = std::numbers::pi / 180;
 
 class CellSegmenter : public Segmenter {
   public:
@@ -32,6 +35,7 @@ class CellSegmenter : public Segmenter {
                      min_pixels_);
         label_pixels({options_.thickness_m, options_.thickness_sigmas, camera.noise});
         sum_regions(camera);
+        merge_pieces(camera);
         make_regions(out.regions);
         grid_.take_labels(out.labels);
         tracer_.trace_all(out.labels, camera, out.regions);
@@ -48,6 +52,7 @@ class CellSegmenter : public Segmenter {
     struct RegionSums {
         PointSums points;    // unweighted
         PointSums weighted;  // by the noise
+        int cells = 0;
     };
 
     CellRules rules_for(const CameraInfo& camera) const;
@@ -58,6 +63,7 @@ class CellSegmenter : public Segmenter {
     void sum_regions(const CameraInfo& camera);
     void sum_waiting(const DepthNoise& noise);
     void add_sums(const DepthNoise& noise, std::uint16_t label, const PointSums& part);
+    void merge_pieces(const CameraInfo& camera);
     void make_regions(std::vector<PlanarRegion>& regions);
     void rename_labels();
 
@@ -70,7 +76,8 @@ class CellSegmenter : public Segmenter {
     std::vector<int> changed_, next_changed_;
     std::vector<CellGrid::Part> waiting_;  // to be summed
     std::vector<RegionSums> region_sums_;
-    std::vector<InverseDepthFit> fits_;
+    std::vector<MergeRegion> pieces_;  // the regions once more, as merging takes them
+    std::vector<Touch> touching_;
     std::vector<std::uint16_t> order_, new_label_;
     ShapeTracer tracer_;
 };
@@ -88,7 +95,7 @@ CellRules CellSegmenter::rules_for(const CameraInfo& camera) const {
     rules.lateral_px = options_.lateral_px;
     rules.grow_m = options_.grow_m;
     rules.grow_sigmas = options_.grow_sigmas;
-    rules.grow_angle_rad = options_.grow_angle_deg * std::numbers::pi / 180;
+    rules.grow_angle_rad = options_.grow_angle_deg * kRadians;
     return rules;
 }
 
@@ -153,7 +160,7 @@ void CellSegmenter::label_pixels(const BorderBand& band) {
     const auto offer_on = [&](int cell, std::uint16_t label) {
         if (labels[cell] == 0 && offer(cell, label)) next_changed_.push_back(cell);
     };
-    constexpr int kRounds = 4;
+    constexpr int kRounds = 8;
     constexpr int kEnough = kCellPx * kCellPx / 4;
     for (int round = 0; round < kRounds && !changed_.empty(); ++round) {
         for (const int i : changed_) label_cell(i, band);
@@ -190,6 +197,7 @@ void CellSegmenter::add_sums(const DepthNoise& noise, std::uint16_t label, const
     const double z = part.zz / part.z, sigma = std::clamp(noise.sigma(z), 1e-6, 0.1 * z);
     RegionSums& region = region_sums_[label - 1];
     region.points += part;
+    ++region.cells;
     add_unbiased(region.weighted, part, sigma * sigma / (z * z));
 }
 
@@ -219,12 +227,43 @@ void CellSegmenter::sum_regions(const CameraInfo& camera) {
     if (!waiting_.empty()) sum_waiting(camera.noise);
 }
 
+void CellSegmenter::merge_pieces(const CameraInfo& camera) {
+    // Now that the borders are final and the planes exact, pieces of one plane show that could not be told
+    // before, when cells with a part of something else in them spoilt the planes.
+    pieces_.clear();
+    for (const RegionSums& sums : region_sums_)
+        pieces_.push_back({sums.weighted, sums.weighted.fit(), sums.points.n, sums.cells, 0});
+    touching_.clear();
+    const int columns = grid_.columns();
+    const auto meet = [&](const CellLabels& one, const CellLabels& other) {
+        for (std::size_t k = 0; k < one.size; ++k) {
+            for (std::size_t m = 0; m < other.size; ++m) {
+                if (one.label[k] != other.label[m] && one.pixels[k] > 0 && other.pixels[m] > 0)
+                    touching_.push_back({one.label[k], other.label[m], 0, 1});
+            }
+        }
+    };
+    for (int i = 0; i < grid_.size(); ++i) {
+        const CellLabels& list = cell_labels_[i];
+        if (list.size > 1) meet(list, list);
+        if (i % columns + 1 < columns) meet(list, cell_labels_[i + 1]);
+        if (i + columns < grid_.size()) meet(list, cell_labels_[i + columns]);
+    }
+    merge_regions({options_.merge_m, options_.merge_sigmas, options_.merge_angle_deg * kRadians,
+                   kCellPx / camera.depth.fx, camera.noise},
+                  pieces_, touching_);
+    for (std::size_t r = 0; r < pieces_.size(); ++r) {
+        if (pieces_[r].merged_into == 0) continue;
+        const std::size_t into = root(pieces_, static_cast<std::uint16_t>(r + 1)) - 1u;
+        region_sums_[into].points += region_sums_[r].points;
+        region_sums_[r] = {};
+    }
+}
+
 void CellSegmenter::make_regions(std::vector<PlanarRegion>& regions) {
     order_.clear();
-    fits_.resize(region_sums_.size());
-    for (std::size_t r = 0; r < region_sums_.size(); ++r) {
-        fits_[r] = region_sums_[r].weighted.fit();
-        if (region_sums_[r].points.n >= min_pixels_ && fits_[r].valid)
+    for (std::size_t r = 0; r < pieces_.size(); ++r) {
+        if (region_sums_[r].points.n >= min_pixels_ && pieces_[r].fit.valid)
             order_.push_back(static_cast<std::uint16_t>(r));
     }
     std::sort(order_.begin(), order_.end(), [&](std::uint16_t a, std::uint16_t b) {
@@ -235,12 +274,16 @@ void CellSegmenter::make_regions(std::vector<PlanarRegion>& regions) {
     regions.resize(order_.size());
     for (std::size_t k = 0; k < order_.size(); ++k) {
         PlanarRegion& region = regions[k];
-        region.plane = fits_[order_[k]].plane.plane();
+        region.plane = pieces_[order_[k]].fit.plane.plane();
         region.moments = region_sums_[order_[k]].points.moments();
         const Eigen::Vector3d& n = region.plane.normal;
         const double offset = region.plane.signed_distance(region.moments.mean());
         region.rms = std::sqrt(std::max(0.0, n.dot(region.moments.covariance() * n)) + offset * offset);
         new_label_[order_[k] + 1u] = static_cast<std::uint16_t>(k + 1);
+    }
+    for (std::size_t r = 0; r < pieces_.size(); ++r) {
+        if (pieces_[r].merged_into != 0)
+            new_label_[r + 1] = new_label_[root(pieces_, static_cast<std::uint16_t>(r + 1))];
     }
     rename_labels();
 }

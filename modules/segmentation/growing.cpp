@@ -21,11 +21,6 @@ std::array<int, 4> neighbour_steps(const CellMap& map) {
     return {1, map.columns, -1, -map.columns};
 }
 
-/// Distance along the plane's normal, metres, that a difference of inverse depth at depth z means.
-double distance_of(double inverse_depth, double z, const InverseDepthPlane& plane) {
-    return std::abs(inverse_depth) * z / plane.steepness();
-}
-
 /// A region's plane as cells are held against it.
 struct Target {
     float a, b, c, steepness, nx, ny, nz;
@@ -73,7 +68,7 @@ void RegionGrower::grow(const CellMap& map, double min_pixels) {
     rank_seeds(map);
     for (const int seed : seeds_) grow_from(map, seed, 0.4 * min_pixels);
     settle_borders(map);
-    merge_regions(map);
+    merge(map);
     drop_thin(map);
     drop_curved(map);
     keep_large(0.4 * min_pixels);
@@ -151,7 +146,7 @@ void RegionGrower::grow_from(const CellMap& map, int seed, double min_pixels) {
     if (label_of_cell_[seed] != 0 || tried_[seed] != 0 || regions_.size() >= kMaxRegions) return;
     const auto label = static_cast<std::uint16_t>(regions_.size() + 1);
     const std::array<int, 4> steps = neighbour_steps(map);
-    Region region;
+    MergeRegion region;
     region.fit = fit_around(map, seed);
     if (!region.fit.valid) return;
     Target target(region.fit.plane);
@@ -172,7 +167,7 @@ void RegionGrower::grow_from(const CellMap& map, int seed, double min_pixels) {
     int next_fit = kFirstFit;
     queue_.clear();
     add(seed);
-    // The second pass looks again at neighbours that the plane of the first cells did not accept.
+    // The second pass looks again at what the plane of the first cells did not accept.
     for (int pass = 0; pass < 2; ++pass) {
         for (std::size_t next = 0; next < queue_.size(); ++next) {
             const int i = queue_[next];
@@ -185,7 +180,20 @@ void RegionGrower::grow_from(const CellMap& map, int seed, double min_pixels) {
             refit();
             next_fit = region.cells + 1 + region.cells / 8;
         }
-        if (region.cells >= kFirstFit) refit();
+        if (region.cells < kFirstFit) continue;
+        refit();
+        if (pass > 0) continue;
+        // Let go of what the plane that came out does not accept.
+        region.sums = {};
+        region.pixels = 0;
+        region.cells = 0;
+        grown_.swap(queue_);
+        queue_.clear();
+        for (const int i : grown_) {
+            label_of_cell_[i] = 0;
+            if (target.accepts(map.cells[i])) add(i);
+        }
+        refit();
     }
     if (region.pixels < min_pixels || !region.fit.valid) {
         for (const int i : queue_) label_of_cell_[i] = 0, tried_[i] = 1;
@@ -219,25 +227,20 @@ void RegionGrower::settle_borders(const CellMap& map) {
 }
 
 void RegionGrower::resum(const CellMap& map) {
-    for (Region& region : regions_) region = Region{};
+    for (MergeRegion& region : regions_) region = MergeRegion{};
     for (std::size_t i = 0; i < map.cells.size(); ++i) {
         if (label_of_cell_[i] == 0) continue;
-        Region& region = regions_[label_of_cell_[i] - 1];
+        MergeRegion& region = regions_[label_of_cell_[i] - 1];
         region.sums.add(weight(map.cells[i]), map.sums[i]);
         region.pixels += map.sums[i].n;
         ++region.cells;
     }
-    for (Region& region : regions_) region.fit = region.sums.fit();
-}
-
-std::uint16_t RegionGrower::root(std::uint16_t label) const {
-    while (regions_[label - 1u].merged_into != 0) label = regions_[label - 1u].merged_into;
-    return label;
+    for (MergeRegion& region : regions_) region.fit = region.sums.fit();
 }
 
 void RegionGrower::find_touching(const CellMap& map) {
     // Pairs of regions with cells side by side, or with up to kGap other cells between them.
-    constexpr int kGap = 3;
+    constexpr int kGap = 4;
     touching_.clear();
     const auto look = [&](std::size_t from, int steps, std::ptrdiff_t stride, int link_bit) {
         const std::uint16_t a = label_of_cell_[from];
@@ -258,84 +261,15 @@ void RegionGrower::find_touching(const CellMap& map) {
             look(i, std::min(kGap + 1, map.rows - 1 - y), map.columns, 1);
         }
     }
-    gather_touching();
 }
 
-void RegionGrower::gather_touching() {
-    // One entry a pair of regions, named by what they have become part of.
-    for (Touch& touch : touching_) {
-        const std::uint16_t a = root(touch.a), b = root(touch.b);
-        touch.a = std::min(a, b);
-        touch.b = std::max(a, b);
-    }
-    std::erase_if(touching_, [](const Touch& t) { return t.a == t.b; });
-    std::sort(touching_.begin(), touching_.end(),
-              [](const Touch& s, const Touch& t) { return std::pair(s.a, s.b) < std::pair(t.a, t.b); });
-    std::size_t count = 0;
-    for (const Touch& touch : touching_) {
-        if (count > 0 && touching_[count - 1].a == touch.a && touching_[count - 1].b == touch.b) {
-            touching_[count - 1].linked += touch.linked;
-            touching_[count - 1].side_by_side += touch.side_by_side;
-        } else {
-            touching_[count++] = touch;
-        }
-    }
-    touching_.resize(count);
-}
-
-double RegionGrower::merge_cost(const Touch& touch, const CellMap& map) const {
-    const Region &a = regions_[touch.a - 1u], &b = regions_[touch.b - 1u];
-    constexpr double kNever = 2;
-    if (!a.fit.valid || !b.fit.valid) return kNever;
-    PointSums sums = a.sums;
-    sums += b.sums;
-    const InverseDepthFit joint = sums.fit();
-    if (!joint.valid) return kNever;
-    // Where the cells at the common border continue each other there is no step, and what is left of a gap is
-    // the sensor's distortion; where nothing is known about the border only a much better fit will do.
-    const bool continuous = 2 * touch.linked > touch.side_by_side;
-    const double strictness = continuous ? 1 : 0.5;
-    double worst = 0;
-    double angle = options_.merge_angle_deg * kRadians;
-    for (const Region* part : {&a, &b}) {
-        const double z = 1 / part->fit.w;
-        const double sigma = map.noise.sigma(z);
-        const double limit = strictness * std::max(options_.merge_m, options_.merge_sigmas * sigma);
-        const double excess = std::max(0.0, part->fit.mse_to(joint.plane) - part->fit.mse);
-        worst = std::max(worst, distance_of(std::sqrt(excess), z, joint.plane) / limit);
-        // The normal of a small far region is uncertain.
-        angle += sigma / z / (map.cell_x * std::sqrt(part->cells) * 0.5 * part->cells);
-    }
-    return a.fit.plane.cosine(b.fit.plane) >= std::cos(std::min(angle, 1.0)) ? worst : kNever;
-}
-
-void RegionGrower::merge_regions(const CellMap& map) {
+void RegionGrower::merge(const CellMap& map) {
     find_touching(map);
-    while (true) {
-        const Touch* best = nullptr;
-        double best_cost = 1;
-        for (Touch& touch : touching_) {
-            if (touch.cost < 0) touch.cost = merge_cost(touch, map);
-            if (touch.cost < best_cost) best_cost = touch.cost, best = &touch;
-        }
-        if (best == nullptr) break;
-        const std::uint16_t into_label = best->a, from_label = best->b;
-        Region &into = regions_[into_label - 1u], &from = regions_[from_label - 1u];
-        into.sums += from.sums;
-        into.pixels += from.pixels;
-        into.cells += from.cells;
-        into.fit = into.sums.fit();
-        from = Region{};
-        from.merged_into = into_label;
-        for (Touch& touch : touching_) {
-            if (touch.a == into_label || touch.b == into_label || touch.a == from_label ||
-                touch.b == from_label)
-                touch.cost = -1;
-        }
-        gather_touching();
-    }
+    merge_regions(
+        {options_.merge_m, options_.merge_sigmas, options_.merge_angle_deg * kRadians, map.cell_x, map.noise},
+        regions_, touching_);
     for (std::uint16_t& label : label_of_cell_) {
-        if (label != 0) label = root(label);
+        if (label != 0) label = root(regions_, label);
     }
 }
 
@@ -354,7 +288,7 @@ RegionGrower::Bend RegionGrower::bend_of(const CellMap& map, std::uint16_t label
     // Fits a quadratic to the distances from the plane of so many cells at most. Coordinates in the plane are
     // divided by z, so that the equations are well scaled.
     constexpr int kCells = 100;
-    const Region& region = regions_[label - 1];
+    const MergeRegion& region = regions_[label - 1];
     const Plane plane = region.fit.plane.plane();
     const double z = 1 / region.fit.w;
     const Eigen::Vector3d centre = Eigen::Vector3d(region.fit.x, region.fit.y, 1) * z;
@@ -399,7 +333,7 @@ bool RegionGrower::is_curved(const CellMap& map, std::uint16_t label) const {
     // Bent by more than the noise; or flat as far as it goes, but the surface goes on around it.
     constexpr int kFewestCells = 8;  // for the bend to mean something
     constexpr double kSmoothShare = 0.4;
-    const Region& region = regions_[label - 1u];
+    const MergeRegion& region = regions_[label - 1u];
     const bool measured = region.cells >= kFewestCells;
     const bool bent = bend.turn > options_.bend_deg * kRadians &&
                       bend.rise > map.noise.sigma(1 / region.fit.w) && bend.explained > 0.5;
@@ -440,7 +374,7 @@ void RegionGrower::find_smooth_borders(const CellMap& map) {
 
 void RegionGrower::remove(std::uint16_t label) {
     std::replace(label_of_cell_.begin(), label_of_cell_.end(), label, std::uint16_t{0});
-    regions_[label - 1u] = Region{};
+    regions_[label - 1u] = MergeRegion{};
 }
 
 void RegionGrower::drop_thin(const CellMap& map) {
@@ -460,11 +394,12 @@ void RegionGrower::drop_thin(const CellMap& map) {
         return squares_[label - 1u] * kCellsPerSquare < regions_[label - 1u].cells;
     };
     find_touching(map);
+    gather(regions_, touching_);
     for (const Touch& touch : touching_) {
         const bool first = is_thin(touch.a) && regions_[touch.a - 1u].cells < regions_[touch.b - 1u].cells;
         if (!first && !is_thin(touch.b)) continue;
         const std::uint16_t thin = first ? touch.a : touch.b, other = first ? touch.b : touch.a;
-        const Region &strip = regions_[thin - 1u], &beside = regions_[other - 1u];
+        const MergeRegion &strip = regions_[thin - 1u], &beside = regions_[other - 1u];
         if (strip.cells == 0 || beside.cells < strip.cells) continue;
         const double z = 1 / strip.fit.w;
         const double band = std::max(options_.thickness_m, options_.thickness_sigmas * map.noise.sigma(z));

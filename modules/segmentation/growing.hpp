@@ -9,6 +9,7 @@
 
 #include "segmentation/cell_kernels.hpp"
 #include "segmentation/cells.hpp"
+#include "segmentation/merging.hpp"
 #include "segmentation/point_sums.hpp"
 
 namespace planemap {
@@ -35,22 +36,6 @@ class RegionGrower {
     const std::vector<InverseDepthPlane>& planes() const { return planes_; }
 
   private:
-    struct Region {
-        PointSums sums;  // weighted: the mean squared residual of w is in units of its variance
-        InverseDepthFit fit;
-        double pixels = 0;
-        int cells = 0;
-        std::uint16_t merged_into = 0;  // label, 0: none
-    };
-
-    /// Two regions that lie side by side somewhere.
-    struct Touch {
-        std::uint16_t a = 0, b = 0;  // labels, a < b
-        int linked = 0;              // pairs of linked cells
-        int side_by_side = 0;        // pairs of neighbouring cells
-        double cost = -1;            // of merging them: < 1 is good, negative: not known
-    };
-
     /// How a region departs from its plane.
     struct Bend {
         double turn = 0;       // of the normal from end to end, radians
@@ -67,7 +52,7 @@ class RegionGrower {
     InverseDepthFit fit_around(const CellMap& map, int cell) const;
     void grow_from(const CellMap& map, int seed, double min_pixels);
     void settle_borders(const CellMap& map);
-    void merge_regions(const CellMap& map);
+    void merge(const CellMap& map);
     void drop_thin(const CellMap& map);
     void drop_curved(const CellMap& map);
     void remove(std::uint16_t label);
@@ -75,22 +60,19 @@ class RegionGrower {
     void find_smooth_borders(const CellMap& map);
     void keep_large(double min_pixels);
 
-    double merge_cost(const Touch& touch, const CellMap& map) const;
     Bend bend_of(const CellMap& map, std::uint16_t label) const;
     bool is_curved(const CellMap& map, std::uint16_t label) const;
     void find_touching(const CellMap& map);
-    void gather_touching();
     void resum(const CellMap& map);
-    std::uint16_t root(std::uint16_t label) const;
 
     CellOptions options_;
     std::vector<std::uint8_t> links_;  // bit k: neighbour k (right, down, left, up) continues the surface
     std::vector<float> turn_;          // 1 - cosine to the linked neighbour that lies most unlike the cell
     std::vector<std::uint8_t> rank_;   // of each cell as a seed, 0: best
-    std::vector<int> seeds_, queue_;
+    std::vector<int> seeds_, queue_, grown_;
     std::vector<std::uint8_t> tried_;  // cells of a seed that came to nothing
     std::vector<std::uint16_t> label_of_cell_;
-    std::vector<Region> regions_;
+    std::vector<MergeRegion> regions_;
     std::vector<Touch> touching_;
     std::vector<Border> borders_;
     std::vector<int> squares_;          // two by two cells, of each region

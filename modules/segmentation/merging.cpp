@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "segmentation/merging.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace planemap {
+
+namespace {
+
+/// How far the worse of two regions would leave their common plane, as a share of what is allowed.
+double merge_cost(const MergeRules& rules, const std::vector<MergeRegion>& regions, const Touch& touch) {
+    const MergeRegion &a = regions[touch.a - 1], &b = regions[touch.b - 1];
+    constexpr double kNever = 2;
+    if (!a.fit.valid || !b.fit.valid) return kNever;
+    PointSums sums = a.sums;
+    sums += b.sums;
+    const InverseDepthFit joint = sums.fit();
+    if (!joint.valid) return kNever;
+    // Where the cells at the common border continue each other there is no step, and what is left of a gap is
+    // the sensor's distortion; where nothing is known about the border only a much better fit will do.
+    const bool continuous = 2 * touch.linked > touch.side_by_side;
+    const double strictness = continuous ? 1 : 0.5;
+    double worst = 0, angle = rules.angle_rad;
+    for (const MergeRegion* part : {&a, &b}) {
+        const double z = 1 / part->fit.w, sigma = rules.noise.sigma(z);
+        const double limit = strictness * std::max(rules.merge_m, rules.merge_sigmas * sigma);
+        const double excess = std::max(0.0, part->fit.mse_to(joint.plane) - part->fit.mse);
+        worst = std::max(worst, distance_of(std::sqrt(excess), z, joint.plane) / limit);
+        // The normal of a small far region is uncertain.
+        angle += sigma / z / (rules.cell_x * std::sqrt(part->cells) * 0.5 * part->cells);
+    }
+    return a.fit.plane.cosine(b.fit.plane) >= std::cos(std::min(angle, 1.0)) ? worst : kNever;
+}
+
+}  // namespace
+
+double distance_of(double inverse_depth, double z, const InverseDepthPlane& plane) {
+    return std::abs(inverse_depth) * z / plane.steepness();
+}
+
+std::uint16_t root(const std::vector<MergeRegion>& regions, std::uint16_t label) {
+    while (regions[label - 1].merged_into != 0) label = regions[label - 1].merged_into;
+    return label;
+}
+
+void gather(const std::vector<MergeRegion>& regions, std::vector<Touch>& touching) {
+    for (Touch& touch : touching) {
+        const std::uint16_t a = root(regions, touch.a), b = root(regions, touch.b);
+        touch.a = std::min(a, b);
+        touch.b = std::max(a, b);
+    }
+    std::erase_if(touching, [](const Touch& t) { return t.a == t.b; });
+    std::sort(touching.begin(), touching.end(),
+              [](const Touch& s, const Touch& t) { return std::pair(s.a, s.b) < std::pair(t.a, t.b); });
+    std::size_t count = 0;
+    for (const Touch& touch : touching) {
+        if (count > 0 && touching[count - 1].a == touch.a && touching[count - 1].b == touch.b) {
+            touching[count - 1].linked += touch.linked;
+            touching[count - 1].side_by_side += touch.side_by_side;
+        } else {
+            touching[count++] = touch;
+        }
+    }
+    touching.resize(count);
+}
+
+void merge_regions(const MergeRules& rules, std::vector<MergeRegion>& regions, std::vector<Touch>& touching) {
+    gather(regions, touching);
+    while (true) {
+        const Touch* best = nullptr;
+        double best_cost = 1;
+        for (Touch& touch : touching) {
+            if (touch.cost < 0) touch.cost = merge_cost(rules, regions, touch);
+            if (touch.cost < best_cost) best_cost = touch.cost, best = &touch;
+        }
+        if (best == nullptr) return;
+        const std::uint16_t into_label = best->a, from_label = best->b;
+        MergeRegion &into = regions[into_label - 1], &from = regions[from_label - 1];
+        into.sums += from.sums;
+        into.pixels += from.pixels;
+        into.cells += from.cells;
+        into.fit = into.sums.fit();
+        from = MergeRegion{};
+        from.merged_into = into_label;
+        for (Touch& touch : touching) {
+            if (touch.a == into_label || touch.b == into_label || touch.a == from_label ||
+                touch.b == from_label)
+                touch.cost = -1;
+        }
+        gather(regions, touching);
+    }
+}
+
+}  // namespace planemap

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Joins regions that are parts of one plane.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/camera.hpp"
+#include "segmentation/point_sums.hpp"
+
+namespace planemap {
+
+/// When two regions are one; see CellOptions.
+struct MergeRules {
+    double merge_m = 0, merge_sigmas = 0, angle_rad = 0;
+    double cell_x = 0;  ///< width of a cell in normalised coordinates
+    DepthNoise noise;   ///< of the sensor
+};
+
+/// A region of cells. Its sums are weighted such that the mean squared residual of inverse depth is what
+/// fit() gives.
+struct MergeRegion {
+    PointSums sums;
+    InverseDepthFit fit;
+    double pixels = 0;
+    int cells = 0;
+    std::uint16_t merged_into = 0;  ///< label, 0: none
+};
+
+/// Two regions that lie side by side somewhere.
+struct Touch {
+    std::uint16_t a = 0, b = 0;  ///< labels
+    int linked = 0;              ///< pairs of neighbouring cells where the surface goes on
+    int side_by_side = 0;        ///< pairs of neighbouring cells
+    double cost = -1;            ///< of merging them: < 1 is good, negative: not known
+};
+
+/// Distance along the plane's normal, metres, that a difference of inverse depth at depth z means.
+double distance_of(double inverse_depth, double z, const InverseDepthPlane& plane);
+
+/// Merges pairs that touch, those that fit best first, as long as there are any. Label i + 1 is regions[i];
+/// `touching` may name pairs more than once and in either order. A region that became part of another is left
+/// empty.
+void merge_regions(const MergeRules& rules, std::vector<MergeRegion>& regions, std::vector<Touch>& touching);
+
+/// Makes one entry of each pair, a < b, named by what the regions have become part of.
+void gather(const std::vector<MergeRegion>& regions, std::vector<Touch>& touching);
+
+/// What a region has become part of.
+std::uint16_t root(const std::vector<MergeRegion>& regions, std::uint16_t label);
+
+}  // namespace planemap
