@@ -20,8 +20,10 @@ TEST(Benchmark, FillsARowForEachMethodAndDrawsWhatItFound) {
     options.overlays = folder.path();
     options.overlay_every = 2;
     options.quiet = true;
+    std::string missing;
     const std::vector<Row> rows =
-        Benchmark(options).run(parse_sequences("wall").front(), parse_methods("cells/2,ransac/2"));
+        Benchmark(options).run(parse_sequences("wall").front(), parse_methods("cells/2,ransac/2"), missing);
+    EXPECT_EQ(missing, "");
     ASSERT_EQ(rows.size(), 3u);
     EXPECT_EQ(rows[0].method.name, "truth");
     EXPECT_TRUE(rows[0].ms.empty());
@@ -38,11 +40,14 @@ TEST(Benchmark, FillsARowForEachMethodAndDrawsWhatItFound) {
     EXPECT_FALSE(std::filesystem::exists(folder.path() / "wall" / "0001-cells-2.png"));
 }
 
-TEST(Benchmark, MissingDataGivesNoRows) {
+TEST(Benchmark, MissingDataGivesNoRowsAndIsSaid) {
     BenchmarkOptions options;
     options.data = "/no/such/folder";
-    EXPECT_TRUE(
-        Benchmark(options).run(parse_sequences("redkitchen").front(), parse_methods("cells")).empty());
+    std::string missing;
+    const auto rows =
+        Benchmark(options).run(parse_sequences("redkitchen").front(), parse_methods("cells"), missing);
+    EXPECT_TRUE(rows.empty());
+    EXPECT_THAT(missing, HasSubstr("/no/such/folder/redkitchen"));
 }
 
 TEST(Benchmark, BadOptionsAreNamed) {

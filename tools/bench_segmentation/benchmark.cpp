@@ -64,14 +64,11 @@ Benchmark::Benchmark(const BenchmarkOptions& options) : options_(options) {
     options_.validate();
 }
 
-std::vector<Row> Benchmark::run(const SequenceInfo& info, const std::vector<MethodName>& methods) {
+std::vector<Row> Benchmark::run(const SequenceInfo& info, const std::vector<MethodName>& methods,
+                                std::string& missing) {
     const int frames = options_.frames > 0 ? options_.frames : info.frames;
-    std::string missing;
     const auto sequence = open_sequence(info, frames, options_.data, missing);
-    if (!sequence) {
-        std::printf("\n%s: skipped. %s\n", info.name.c_str(), missing.c_str());
-        return {};
-    }
+    if (!sequence) return {};
     std::vector<Contender> contenders;
     for (const MethodName& name : methods) {
         const auto count = static_cast<std::size_t>(is_slow(name) ? options_.slow_frames : frames);

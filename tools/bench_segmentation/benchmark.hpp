@@ -26,8 +26,10 @@ class Benchmark {
     explicit Benchmark(const BenchmarkOptions& options);
 
     /// Runs every method on a sequence and returns a row each, after one named "truth" for the truth itself
-    /// where there is one: what nothing can beat. Nothing, and a line on stdout, when its data is missing.
-    std::vector<Row> run(const SequenceInfo& info, const std::vector<MethodName>& methods);
+    /// where there is one: what nothing can beat. Without its data it returns nothing, and says why in
+    /// `missing`.
+    std::vector<Row> run(const SequenceInfo& info, const std::vector<MethodName>& methods,
+                         std::string& missing);
 
   private:
     struct Contender;
