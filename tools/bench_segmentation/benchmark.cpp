@@ -64,14 +64,11 @@ Benchmark::Benchmark(const BenchmarkOptions& options) : options_(options) {
     options_.validate();
 }
 
-std::vector<Row> Benchmark::run(const SequenceInfo& info, const std::vector<MethodName>& methods) {
+std::vector<Row> Benchmark::run(const SequenceInfo& info, const std::vector<MethodName>& methods,
+                                std::string& missing) {
     const int frames = options_.frames > 0 ? options_.frames : info.frames;
-    std::string missing;
     const auto sequence = open_sequence(info, frames, options_.data, missing);
-    if (!sequence) {
-        std::printf("\n%s: skipped. %s\n", info.name.c_str(), missing.c_str());
-        return {};
-    }
+    if (!sequence) return {};
     std::vector<Contender> contenders;
     for (const MethodName& name : methods) {
         const auto count = static_cast<std::size_t>(is_slow(name) ? options_.slow_frames : frames);
@@ -82,19 +79,23 @@ std::vector<Row> Benchmark::run(const SequenceInfo& info, const std::vector<Meth
         for (const std::size_t i : evenly_spread(sequence->indices.size(), count))
             contenders.back().indices.push_back(sequence->indices[i]);
     }
+    Row truth;
+    truth.sequence = info.name;
+    truth.method = {"truth", 1};
     for (std::size_t i = 0; i < sequence->indices.size(); ++i) {
         const bool draw =
             !options_.overlays.empty() && i % static_cast<std::size_t>(options_.overlay_every) == 0;
-        run_frame(*sequence, sequence->indices[i], draw, contenders);
+        run_frame(*sequence, sequence->indices[i], draw, contenders, truth);
     }
     end_progress();
     std::vector<Row> rows;
+    if (truth.has_truth) rows.push_back(std::move(truth));
     for (Contender& contender : contenders) rows.push_back(std::move(contender.row));
     return rows;
 }
 
 void Benchmark::run_frame(const Sequence& sequence, std::size_t index, bool draw,
-                          std::vector<Contender>& contenders) {
+                          std::vector<Contender>& contenders, Row& truth) {
     BenchFrame frame;
     try {
         frame = sequence.load(index);
@@ -104,7 +105,11 @@ void Benchmark::run_frame(const Sequence& sequence, std::size_t index, bool draw
         return;
     }
     const auto normals = local_normals(frame.depth, sequence.camera);
-    if (draw && frame.truth) this->draw(sequence, index, "truth", frame.depth, as_segmentation(*frame.truth));
+    if (frame.truth) {
+        const Segmentation perfect = as_segmentation(*frame.truth);
+        truth.add(std::nullopt, frame, sequence.camera, normals, perfect);
+        if (draw) this->draw(sequence, index, "truth", frame.depth, perfect);
+    }
     for (Contender& contender : contenders) {
         if (!std::binary_search(contender.indices.begin(), contender.indices.end(), index)) continue;
         const MethodName& name = contender.row.method;

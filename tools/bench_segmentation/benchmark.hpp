@@ -25,14 +25,16 @@ class Benchmark {
   public:
     explicit Benchmark(const BenchmarkOptions& options);
 
-    /// Runs every method on a sequence and returns a row each; nothing, and a line on stdout, when its data
-    /// is missing.
-    std::vector<Row> run(const SequenceInfo& info, const std::vector<MethodName>& methods);
+    /// Runs every method on a sequence and returns a row each, after one named "truth" for the truth itself
+    /// where there is one: what nothing can beat. Without its data it returns nothing, and says why in
+    /// `missing`.
+    std::vector<Row> run(const SequenceInfo& info, const std::vector<MethodName>& methods,
+                         std::string& missing);
 
   private:
     struct Contender;
-    void run_frame(const Sequence& sequence, std::size_t index, bool draw,
-                   std::vector<Contender>& contenders);
+    void run_frame(const Sequence& sequence, std::size_t index, bool draw, std::vector<Contender>& contenders,
+                   Row& truth);
     void draw(const Sequence& sequence, std::size_t index, const std::string& name, const DepthImage& depth,
               const Segmentation& segmentation) const;
     void show_progress(const Sequence& sequence, std::size_t index, const MethodName& method);

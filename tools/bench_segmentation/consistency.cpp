@@ -42,13 +42,12 @@ Spread WorldPlanes::spread(const WorldPlane& plane) {
     double angle = 0, sum = 0, squares = 0;
     for (const Sighting& sighting : plane.sightings) {
         const double distance = mean.signed_distance(sighting.centroid);
-        angle += std::pow(angle_between(mean.normal, sighting.plane.normal), 2);
-        sum += distance;
-        squares += distance * distance;
+        const double weight = sighting.pixels / plane.pixels;
+        angle += weight * std::pow(angle_between(mean.normal, sighting.plane.normal), 2);
+        sum += weight * distance;
+        squares += weight * distance * distance;
     }
-    const auto n = static_cast<double>(plane.sightings.size());
-    return {1, std::sqrt(angle / n) * 180 / std::numbers::pi,
-            std::sqrt(std::max(0.0, squares / n - sum * sum / (n * n)))};
+    return {1, std::sqrt(angle) * 180 / std::numbers::pi, std::sqrt(std::max(0.0, squares - sum * sum))};
 }
 
 Spread WorldPlanes::spread_of_largest(int count) const {

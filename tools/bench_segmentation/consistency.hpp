@@ -15,7 +15,8 @@ struct Sighting {
     double pixels = 0;
 };
 
-/// How much the sightings of world planes scatter.
+/// How much the sightings of world planes scatter, weighted by their pixels: what describes most of a plane
+/// counts most.
 struct Spread {
     int planes = 0;         ///< that it is the median of
     double angle_deg = 0;   ///< standard deviation of the normal about the mean normal

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kReach = 8;  // the window is 2 kReach + 1 pixels wide
 constexpr double kLeastReadings = 145;
-constexpr double kSigmas = 3;
+constexpr double kSigmas = 2;
 
 /// Sums over the readings of one column within the window's rows; w = 1/z, v = row.
 struct Column {

@@ -2,7 +2,6 @@
 // planemap-bench-segmentation: methods that find planes in depth images, on the same frames.
 #include <cstdio>
 #include <cstdlib>
-#include <iostream>
 
 #include "bench_segmentation/benchmark.hpp"
 #include "bench_segmentation/build_info.hpp"
@@ -48,7 +47,7 @@ std::string description() {
     return "Methods that find planes in depth images, on the same frames, one thread.\n"
            "Examples:\n  " +
            std::string(kProgram) +
-           " --json rows.json                       everything, about 3 minutes\n"
+           " --json rows.json                       everything, about 2 minutes\n"
            "  planemap-bench-segmentation --sequences redkitchen --methods cells,ransac/4\n"
            "  planemap-bench-segmentation --table1                                the paper's Table 1\n"
            "  planemap-bench-segmentation --sequences sim:office --methods cells/1 --overlays out/overlays\n"
@@ -65,7 +64,7 @@ std::string description() {
            "  planes    regions a frame, of any size\n"
            "  expl%     readings that carry a label and lie within max(1.5 cm, 3 sigma) of its plane, with\n"
            "            sigma(z) = 0.0012 + 0.0019 (z - 0.4)^2 m\n"
-           "  coh%      of the locally planar pixels (17 x 17 pixels around fit a plane within 3 sigma "
+           "  coh%      of the locally planar pixels (17 x 17 pixels around fit a plane within 2 sigma "
            "RMS):\n"
            "            explained by a plane within 20 deg of the local normal\n"
            "  off30%    of the locally planar pixels with a label: its plane is more than 30 deg off\n"
@@ -74,7 +73,7 @@ std::string description() {
            "  corr over under miss noise   SegComp's instances at 80 % (Hoover et al. 1996)\n"
            "  deg mm    median error of the matched regions' normals, and distances at their centroids\n"
            "  spread    of the five largest world planes' normals and distances from frame to frame under\n"
-           "            the true poses: standard deviation, median of the five\n"
+           "            the true poses: standard deviation weighted by pixels, median of the five\n"
            "Under subsampling, labels spread to the nearest pixels that lie within max(1.5 cm, 3 sigma).";
 }
 
@@ -86,26 +85,32 @@ void add_flags(Flags& flags, Arguments& arguments) {
     flags.add("slow-frames", options.slow_frames, "at most this many frames for a method that is slow");
     flags.add("data", options.data, "folder of the recordings; default: $PLANEMAP_DATA, or ../shared/data");
     flags.add("table1", arguments.table1, "the paper's Table 1 instead: every method at 1.5, 2.5 and 3.5 m");
-    flags.add("json", arguments.json, "write the rows to this file, or to - (standard output)");
+    flags.add("json", arguments.json,
+              "write the rows to this file, or to - (standard output; tables then go to stderr)");
     flags.add("overlays", options.overlays, "draw what was found: FOLDER/SEQUENCE/FRAME-METHOD.png");
     flags.add("overlay-every", options.overlay_every, "a picture of every n-th frame that is run");
     flags.add("q,quiet", options.quiet, "no progress on stderr");
 }
 
-nlohmann::ordered_json run_sequences(const Arguments& arguments) {
+nlohmann::ordered_json run_sequences(const Arguments& arguments, std::FILE* out) {
     const std::vector<SequenceInfo> sequences = parse_sequences(arguments.sequences);
     const std::vector<MethodName> methods = parse_methods(arguments.methods);
     nlohmann::ordered_json json = nlohmann::ordered_json::array();
     Benchmark benchmark(arguments.benchmark);
     for (const SequenceInfo& sequence : sequences) {
-        const std::vector<Row> rows = benchmark.run(sequence, methods);
-        if (rows.empty()) continue;
-        std::printf("\n%s: %s\n%s", sequence.name.c_str(), sequence.what.c_str(), table_heading().c_str());
+        std::string missing;
+        const std::vector<Row> rows = benchmark.run(sequence, methods, missing);
+        if (!missing.empty()) {
+            std::fprintf(out, "\n%s: skipped. %s\n", sequence.name.c_str(), missing.c_str());
+            continue;
+        }
+        std::fprintf(out, "\n%s: %s\n%s", sequence.name.c_str(), sequence.what.c_str(),
+                     table_heading().c_str());
         for (const Row& row : rows) {
-            std::fputs(table_line(row).c_str(), stdout);
+            std::fputs(table_line(row).c_str(), out);
             json.push_back(to_json(row));
         }
-        std::fflush(stdout);
+        std::fflush(out);
     }
     return json;
 }
@@ -121,17 +126,18 @@ std::vector<MethodName> table1_methods(const std::string& list, bool is_default)
 }
 
 int run(const Arguments& arguments) {
-    std::fputs(build_info().c_str(), stdout);
+    const bool json_to_stdout = arguments.json == "-",
+               json_to_file = !arguments.json.empty() && !json_to_stdout;
+    if (json_to_file) write_file(arguments.json, "[]\n");  // an error now, not in two minutes
+    std::FILE* out = json_to_stdout ? stderr : stdout;
+    std::fputs(build_info().c_str(), out);
     const bool all_methods = arguments.methods == names_of(known_methods());
-    const nlohmann::ordered_json json = arguments.table1
-                                            ? print_table1(table1_methods(arguments.methods, all_methods))
-                                            : run_sequences(arguments);
+    const nlohmann::ordered_json json =
+        arguments.table1 ? print_table1(table1_methods(arguments.methods, all_methods), out)
+                         : run_sequences(arguments, out);
     const std::string text = json.dump(1) + "\n";
-    if (arguments.json == "-") {
-        std::cout << text;
-    } else if (!arguments.json.empty()) {
-        write_file(arguments.json, text);
-    }
+    if (json_to_stdout) std::fputs(text.c_str(), stdout);
+    if (json_to_file) write_file(arguments.json, text);
     return 0;
 }
 

@@ -51,6 +51,7 @@ bool is_ransac(const std::string& name) {
 }
 
 std::unique_ptr<Finder> make_finder(const MethodName& method) {
+    silence_pcl();
     const int step = method.subsampling;
     const auto ours = [](std::unique_ptr<Segmenter> segmenter) {
         return std::make_unique<SegmenterFinder>(std::move(segmenter));
@@ -104,7 +105,7 @@ const std::vector<MethodInfo>& known_methods() {
         {"ransac-debian", "the same with Debian's build of PCL's templates", {4}, {1, 2, 4}},
         {"organised", "PCL's organised multi-plane segmentation, 3D-gradient normals", {1}, {1}},
         {"rgbdplane", "OpenCV's RgbdPlane without normals", {4}, {1, 2}},
-        {"rgbdplane-normals", "OpenCV's RgbdPlane with LINEMOD normals", {4}, {1, 2}},
+        {"rgbdplane-normals", "OpenCV's RgbdPlane with FALS normals", {4}, {1, 2}},
     };
     return methods;
 }

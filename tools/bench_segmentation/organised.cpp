@@ -4,6 +4,7 @@
 #include <pcl/search/kdtree.h>
 #define PCL_NO_PRECOMPILE
 
+#include <pcl/console/print.h>
 #include <pcl/features/integral_image_normal.h>
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
@@ -87,6 +88,10 @@ class OrganisedFinder : public Finder {
 
 std::unique_ptr<Finder> make_organised(int min_inliers) {
     return std::make_unique<OrganisedFinder>(min_inliers);
+}
+
+void silence_pcl() {
+    pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
 }
 
 }  // namespace planemap::bench

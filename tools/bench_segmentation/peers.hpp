@@ -16,12 +16,15 @@ namespace planemap::bench {
 std::unique_ptr<Finder> make_organised(int min_inliers);
 
 /// OpenCV's RgbdPlane (Poppinga et al. 2008, as in ORK's tabletop) with the Kinect's error model; blocks of
-/// `block_px` pixels. Without normals a block grows by distance to the plane alone; with them (LINEMOD's) by
+/// `block_px` pixels. Without normals a block grows by distance to the plane alone; with them (FALS) by
 /// the angle of each pixel's normal, too. The point cloud and the normals are part of the time.
 std::unique_ptr<Finder> make_rgbd_plane(int block_px, bool with_normals);
 
 /// The project's ransac with PCL's templates from Debian's library instead of ones compiled with the
 /// project's flags.
 std::unique_ptr<Segmenter> make_debian_ransac_segmenter(const RansacOptions& options, std::uint64_t seed);
+
+/// Keeps PCL from writing a line for every unlucky sample.
+void silence_pcl();
 
 }  // namespace planemap::bench

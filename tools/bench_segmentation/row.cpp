@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench_segmentation/row.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -58,9 +59,9 @@ nlohmann::ordered_json number(double value, bool known = true) {
 
 }  // namespace
 
-void Row::add(double frame_ms, const BenchFrame& frame, const CameraInfo& camera,
+void Row::add(std::optional<double> frame_ms, const BenchFrame& frame, const CameraInfo& camera,
               const Image<Eigen::Vector3f>& normals, const Segmentation& segmentation) {
-    ms.push_back(frame_ms);
+    if (frame_ms) ms.push_back(*frame_ms);
     score += score_frame(frame.depth, camera, normals, segmentation);
     if (frame.truth) {
         has_truth = true;
@@ -74,13 +75,13 @@ void Row::add(double frame_ms, const BenchFrame& frame, const CameraInfo& camera
 
 std::string table_heading() {
     return "method              sub frames       ms      p95  planes  expl%   coh%  off30%  rms mm |"
-           " rec%  prec%  corr  over under  miss noise    deg     mm | spread deg    mm\n";
+           "  rec%  prec%  corr  over under  miss noise    deg     mm | spread deg    mm\n";
 }
 
 std::string table_line(const Row& row) {
     char name[64];
-    std::snprintf(name, sizeof(name), "%-19s %3d %6zu", row.method.name.c_str(), row.method.subsampling,
-                  row.ms.size());
+    std::snprintf(name, sizeof(name), "%-19s %3d %6.0f", row.method.name.c_str(), row.method.subsampling,
+                  row.score.frames);
     const FrameScore& s = row.score;
     const MatchScore& m = row.match;
     const bool truth = row.has_truth;
@@ -89,7 +90,7 @@ std::string table_line(const Row& row) {
     return name + format(" %8.3f", median(row.ms)) + format(" %8.3f", percentile_95(row.ms)) +
            format(" %7.1f", s.planes_a_frame()) + format(" %6.1f", 100 * s.explained()) +
            format(" %6.1f", 100 * s.coherent()) + format(" %7.2f", 100 * s.off30()) +
-           format(" %7.2f", 1e3 * s.rms()) + " |" + format(" %4.1f", 100 * m.recall(), truth) +
+           format(" %7.2f", 1e3 * s.rms()) + " |" + format(" %5.1f", 100 * m.recall(), truth) +
            format(" %6.1f", 100 * m.precision(), truth && m.found > 0) + format(" %5.0f", m.correct, truth) +
            format(" %5.0f", m.over_segmented, truth) + format(" %5.0f", m.under_segmented, truth) +
            format(" %5.0f", m.missed, truth) + format(" %5.0f", m.noise, truth) +
@@ -108,7 +109,7 @@ nlohmann::ordered_json to_json(const Row& row) {
     return {{"sequence", row.sequence},
             {"method", row.method.name},
             {"subsampling", row.method.subsampling},
-            {"frames", row.ms.size()},
+            {"frames", static_cast<int>(s.frames)},
             {"median_ms", number(median(row.ms))},
             {"p95_ms", number(percentile_95(row.ms))},
             {"max_ms", number(row.ms.empty() ? NAN : *std::max_element(row.ms.begin(), row.ms.end()))},

@@ -17,14 +17,14 @@ namespace planemap::bench {
 struct Row {
     std::string sequence;
     MethodName method;
-    std::vector<double> ms;  ///< of each frame
+    std::vector<double> ms;  ///< of each frame that was timed
     FrameScore score;
     MatchScore match;
     WorldPlanes world_planes;
     bool has_truth = false, has_poses = false;
 
-    /// Takes in one frame. `normals` are the frame's local_normals().
-    void add(double frame_ms, const BenchFrame& frame, const CameraInfo& camera,
+    /// Takes in one frame, timed or not. `normals` are the frame's local_normals().
+    void add(std::optional<double> frame_ms, const BenchFrame& frame, const CameraInfo& camera,
              const Image<Eigen::Vector3f>& normals, const Segmentation& segmentation);
 };
 

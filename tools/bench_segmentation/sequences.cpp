@@ -35,6 +35,17 @@ std::optional<Pose> pose_near(const Trajectory& truth, std::int64_t utime) {
     return sim::pose_at(truth, utime);
 }
 
+/// Decodes an image of the depth camera's size; errors name the file.
+template <typename Decode>
+auto read_image(const std::filesystem::path& file, const CameraInfo& camera, const Decode& decode) {
+    const std::string bytes = read_file(file);
+    try {
+        return decode(bytes, camera.depth.width, camera.depth.height);
+    } catch (const std::runtime_error& error) {
+        throw std::runtime_error(file.string() + ": " + error.what());
+    }
+}
+
 /// A recording in the TUM layout: depth, and poses where there are some.
 Sequence open_recording(const std::filesystem::path& folder, std::size_t frames) {
     const auto dataset = std::make_shared<const Dataset>(folder);
@@ -44,13 +55,8 @@ Sequence open_recording(const std::filesystem::path& folder, std::size_t frames)
         truth = read_trajectory(folder / "groundtruth.txt");
     const auto load = [=](std::size_t index) {
         const ListedImage& listed = dataset->frames()[index].depth;
-        const std::filesystem::path file = folder / listed.file;
         BenchFrame frame;
-        try {
-            frame.depth = decode_depth_png(read_file(file), camera.depth.width, camera.depth.height);
-        } catch (const std::runtime_error& error) {
-            throw std::runtime_error(file.string() + ": " + error.what());
-        }
+        frame.depth = read_image(folder / listed.file, camera, decode_depth_png);
         if (const auto world_from_color = pose_near(truth, listed.utime))
             frame.world_from_depth = *world_from_color * camera.color_from_depth;
         return frame;
@@ -82,11 +88,10 @@ Sequence open_labelled(const std::filesystem::path& folder, std::size_t frames) 
     while (std::filesystem::exists(folder / (std::to_string(count) + ".depth.png"))) ++count;
     const auto load = [=](std::size_t index) {
         const std::string stem = (folder / std::to_string(index)).string();
-        const int width = camera.depth.width, height = camera.depth.height;
         BenchFrame frame;
-        frame.depth = decode_depth_png(read_file(stem + ".depth.png"), width, height);
-        const RgbImage colors = decode_color_png(read_file(stem + ".labels.png"), width, height);
-        Image<std::uint16_t> surfaces(width, height);
+        frame.depth = read_image(stem + ".depth.png", camera, decode_depth_png);
+        const RgbImage colors = read_image(stem + ".labels.png", camera, decode_color_png);
+        Image<std::uint16_t> surfaces(colors.width, colors.height);
         std::map<std::tuple<int, int, int>, std::uint16_t> surface_of{{{0, 0, 0}, std::uint16_t{0}}};
         for (std::size_t i = 0; i < colors.pixels.size(); ++i) {
             const Rgb& c = colors.pixels[i];

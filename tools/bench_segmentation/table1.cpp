@@ -2,7 +2,6 @@
 #include "bench_segmentation/table1.hpp"
 
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -69,13 +68,13 @@ int largest_surface(const Truth& truth) {
     return largest == truth.pieces.end() ? -1 : largest->surface;
 }
 
-void print_row(const Table1Row& row) {
+void print_row(const Table1Row& row, std::FILE* out) {
     char distance[16] = "-";
     if (std::isfinite(row.estimated_distance_m))
         std::snprintf(distance, sizeof(distance), "%.3f", row.estimated_distance_m);
-    std::printf("%-19s %8.1f %4d %12.5f %9.0f %10s %8.1f\n", row.method.name.c_str(), row.distance_m,
-                row.method.subsampling, row.seconds, row.inliers, distance, row.false_planes);
-    std::fflush(stdout);
+    std::fprintf(out, "%-19s %8.1f %4d %12.5f %9.0f %10s %8.1f\n", row.method.name.c_str(), row.distance_m,
+                 row.method.subsampling, row.seconds, row.inliers, distance, row.false_planes);
+    std::fflush(out);
 }
 
 nlohmann::ordered_json to_json(const Table1Row& row) {
@@ -127,8 +126,9 @@ Table1Row measure_table1(const MethodName& name, double distance_m, const std::v
             median(distances), false_planes / static_cast<double>(frames.size())};
 }
 
-nlohmann::ordered_json print_table1(const std::vector<MethodName>& methods) {
-    std::printf(
+nlohmann::ordered_json print_table1(const std::vector<MethodName>& methods, std::FILE* out) {
+    std::fprintf(
+        out,
         "\nTable 1 of the paper: a wall in front of a rendered Kinect, a box and the floor in view; %d "
         "frames "
         "a row.\nInliers are counted as the method counts them: subsampled points.\n"
@@ -136,14 +136,14 @@ nlohmann::ordered_json print_table1(const std::vector<MethodName>& methods) {
         kFrames, "method", "real m", "sub", "runtime s", "inliers", "estimate m", "false");
     const CameraInfo camera = kinect_camera();
     nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-    for (const Table1Row& row : kPaper) print_row(row);
+    for (const Table1Row& row : kPaper) print_row(row, out);
     for (const double distance : kDistances_m) {
         std::vector<BenchFrame> frames;
         for (int seed = 1; seed <= kFrames; ++seed)
             frames.push_back(wall_scene(distance, static_cast<std::uint64_t>(seed), camera));
         for (const MethodName& method : methods) {
             const Table1Row row = measure_table1(method, distance, frames, camera);
-            print_row(row);
+            print_row(row, out);
             rows.push_back(to_json(row));
         }
     }

@@ -2,6 +2,7 @@
 // Table 1 of the paper: what subsampling does to the plane in front of the sensor.
 #pragma once
 
+#include <cstdio>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
@@ -29,7 +30,7 @@ BenchFrame wall_scene(double distance_m, std::uint64_t seed, const CameraInfo& c
 Table1Row measure_table1(const MethodName& name, double distance_m, const std::vector<BenchFrame>& frames,
                          const CameraInfo& camera);
 
-/// Prints the paper's own rows and ours, method by method; returns ours as JSON.
-nlohmann::ordered_json print_table1(const std::vector<MethodName>& methods);
+/// Prints the paper's own rows and ours, method by method, to `out`; returns ours as JSON.
+nlohmann::ordered_json print_table1(const std::vector<MethodName>& methods, std::FILE* out);
 
 }  // namespace planemap::bench

@@ -98,6 +98,7 @@ void match_by_iou(const Overlaps& o, const Segmentation& segmentation, double le
             const Plane& plane = segmentation.regions[f].plane;
             score.recalled += truth.large_pieces;
             score.precise += o.found[f] >= least_pixels;
+            if (truth.large_pieces == 0) continue;
             score.angle_deg.push_back(angle_between(plane.normal, truth.plane.normal) * 180 /
                                       std::numbers::pi);
             score.distance_m.push_back(std::abs(plane.signed_distance(truth.centroid)));

@@ -40,8 +40,8 @@ struct MatchScore {
     int found = 0, precise = 0;         ///< found regions of at least least_pixels; of these: matched
     int correct = 0, over_segmented = 0, under_segmented = 0, missed = 0;  ///< true pieces, sum: true_pieces
     int noise = 0;                   ///< found regions that take part in none of the first three
-    std::vector<double> angle_deg;   ///< of each match: angle between the found and the true normal
-    std::vector<double> distance_m;  ///< of each match: found plane to the true region's centroid
+    std::vector<double> angle_deg;   ///< of each match with a large piece: found to true normal
+    std::vector<double> distance_m;  ///< of each such match: found plane to the true centroid
 
     MatchScore& operator+=(const MatchScore& o);
     double recall() const { return true_pieces > 0 ? static_cast<double>(recalled) / true_pieces : 0; }

@@ -54,7 +54,9 @@ void draw_outline(const PinholeCamera& camera, const PlanarRegion& region, cv::M
     }
 }
 
-/// For each region the pixel of it that is nearest to the mean of its pixels; (-1, -1) without any.
+constexpr double kLeastForNumber = 100;  // pixels: on less a number cannot be read
+
+/// For each region the pixel of it that is nearest to the mean of its pixels; (-1, -1) for a small one.
 std::vector<cv::Point> number_places(const Image<std::uint16_t>& labels, std::size_t regions) {
     struct Mean {
         double u = 0, v = 0, n = 0, least = 1e300;
@@ -74,7 +76,7 @@ std::vector<cv::Point> number_places(const Image<std::uint16_t>& labels, std::si
     for_each_pixel([&](int u, int v, std::uint16_t label) {
         Mean& mean = means[label];
         const double distance = std::hypot(u - mean.u / mean.n, v - mean.v / mean.n);
-        if (distance >= mean.least) return;
+        if (distance >= mean.least || mean.n < kLeastForNumber) return;
         mean.least = distance;
         places[label] = {u, v};
     });

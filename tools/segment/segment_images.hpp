@@ -30,9 +30,10 @@ struct SegmentImagesReport {
 };
 
 /// Writes for each image output/STEM.png (labels, 16-bit greyscale; 0: none, i: region i) and
-/// output/STEM.json, see README. An image that cannot be read, has not the camera's size, or whose results
-/// cannot be written, or would overwrite an input, costs itself only. Throws std::invalid_argument for bad
-/// options or a bad camera, std::runtime_error if the folder cannot be made.
+/// output/STEM.json (image, width, height, method, labels, time_ms, and regions: see regions_json()). An
+/// image that cannot be read, has not the camera's size, or whose results cannot be written, or would
+/// overwrite an input, costs itself only. Throws std::invalid_argument for bad options or a bad camera,
+/// std::runtime_error if the folder cannot be made.
 SegmentImagesReport segment_images(const SegmentImagesOptions& options, const CameraInfo& camera);
 
 /// Takes the arguments that are neither flags nor values of flags out of a command line: the files. Every

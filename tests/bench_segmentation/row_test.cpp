@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench_segmentation/row.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "bench_segmentation/local_normals.hpp"
+#include "bench_segmentation/two_walls.hpp"
+
+namespace planemap::bench {
+namespace {
+
+Row row_of(bool with_truth, bool with_pose) {
+    const TwoWalls walls;
+    BenchFrame frame{walls.depth, std::nullopt, std::nullopt};
+    if (with_truth) frame.truth = walls.truth;
+    if (with_pose) frame.world_from_depth = Pose::Identity();
+    Row row;
+    row.sequence = "walls";
+    row.method = {"perfect", 1};
+    const auto normals = local_normals(walls.depth, walls.camera);
+    for (const double ms : {1.0, 2.0, 3.0}) row.add(ms, frame, walls.camera, normals, walls.perfect);
+    return row;
+}
+
+TEST(Row, JsonHasTheAgreedKeysAndFigures) {
+    const nlohmann::ordered_json json = to_json(row_of(true, true));
+    EXPECT_EQ(json["sequence"], "walls");
+    EXPECT_EQ(json["method"], "perfect");
+    EXPECT_EQ(json["subsampling"], 1);
+    EXPECT_EQ(json["median_ms"], 2.0);
+    EXPECT_EQ(json["p95_ms"], 3.0);
+    EXPECT_EQ(json["planes"], 2.0);
+    EXPECT_EQ(json["explained"], 1.0);
+    EXPECT_GT(json["coherent"], 0.99);
+    EXPECT_EQ(json["off30"], 0.0);
+    EXPECT_LT(json["rms_m"], 0.0005);
+    EXPECT_EQ(json["recall"], 1.0);
+    EXPECT_EQ(json["precision"], 1.0);
+    EXPECT_LT(json["angle_median_deg"], 1e-4);
+    EXPECT_LT(json["distance_median_m"], 1e-6);
+    EXPECT_EQ(json["spread_planes"], 2.0);
+}
+
+TEST(Row, WithoutTruthOrPosesTheFiguresAreNull) {
+    const nlohmann::ordered_json json = to_json(row_of(false, false));
+    for (const char* key : {"recall", "precision", "angle_median_deg", "distance_median_m", "correct",
+                            "spread_angle_deg", "spread_distance_m"})
+        EXPECT_TRUE(json.at(key).is_null()) << key;
+    EXPECT_EQ(json["explained"], 1.0);
+    EXPECT_TRUE(to_json(Row{}).at("median_ms").is_null());
+}
+
+TEST(Row, LinesOfTheTableAreAligned) {
+    std::string heading = table_heading();
+    for (const Row& row : {row_of(true, true), row_of(false, true), row_of(false, false), Row{}}) {
+        const std::string line = table_line(row);
+        EXPECT_EQ(line.size(), heading.size()) << line;
+        for (std::size_t i = 0; i < line.size(); ++i) EXPECT_EQ(line[i] == '|', heading[i] == '|') << line;
+    }
+}
+
+}  // namespace
+}  // namespace planemap::bench
