@@ -21,7 +21,7 @@ namespace {
 constexpr double kRadians = std::numbers::pi / 180;
 
 /// Cosine of the angle between surfaces that cannot be one.
-constexpr float kSimilar = 0.6f;
+constexpr float kSimilar = 0.5f;
 
 class CellSegmenter : public Segmenter {
   public:
@@ -173,8 +173,8 @@ void CellSegmenter::label_pixels(const BorderBand& band) {
     const auto offer_on = [&](int cell, std::uint16_t label) {
         if (labels[cell] == 0 && offer(cell, label)) next_changed_.push_back(cell);
     };
-    constexpr int kRounds = 8;
-    constexpr int kEnough = kCellPx * kCellPx / 4;
+    constexpr int kRounds = 32;
+    constexpr int kEnough = kCellPx * kCellPx / 10;
     for (int round = 1; round < kRounds && !changed_.empty(); ++round) {
         next_changed_.clear();
         for (const int i : changed_) {
