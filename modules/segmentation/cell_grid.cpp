@@ -73,9 +73,9 @@ void CellGrid::label(Place cell, const BorderBand& band, std::span<const Candida
                     candidates.data(), std::min(candidates.size(), kMaxCandidates), pixels);
 }
 
-void CellGrid::clear(Place cell) {
+void CellGrid::fill(Place cell, std::uint16_t label) {
     for (int row = 0; row < kCellPx; ++row)
-        std::fill_n(labels_.row(cell.y * kCellPx + row) + cell.x * kCellPx, kCellPx, std::uint16_t{0});
+        std::fill_n(labels_.row(cell.y * kCellPx + row) + cell.x * kCellPx, kCellPx, label);
 }
 
 void CellGrid::sum(std::span<const Part> parts, PointSums* sums) const {
@@ -92,9 +92,8 @@ void CellGrid::sum(std::span<const Part> parts, PointSums* sums) const {
 }
 
 void CellGrid::rename(Place cell, std::span<const std::uint16_t> new_label) {
-    const int u = cell.x * kCellPx, v = cell.y * kCellPx;
     for (int row = 0; row < kCellPx; ++row) {
-        std::uint16_t* pixels = labels_.row(v + row) + u;
+        std::uint16_t* pixels = labels_.row(cell.y * kCellPx + row) + cell.x * kCellPx;
         for (int i = 0; i < kCellPx; ++i) pixels[i] = new_label[pixels[i]];
     }
 }

@@ -16,7 +16,7 @@ class CellGrid {
   public:
     explicit CellGrid(const CellKernels& kernels) : kernels_(&kernels) {}
 
-    /// Cuts an image; what its labels are is open until all its cells are labelled or cleared. `depth` must
+    /// Cuts an image; what its labels are is open until all its cells are labelled or filled. `depth` must
     /// live as long as the grid is used.
     void reset(const DepthImage& depth, const CellRules& rules);
 
@@ -45,8 +45,8 @@ class CellGrid {
     void label(Place cell, const BorderBand& band, std::span<const Candidate> candidates,
                std::uint8_t* pixels);
 
-    /// Gives a cell's pixels the label 0.
-    void clear(Place cell);
+    /// Gives all of a cell's pixels a label.
+    void fill(Place cell, std::uint16_t label);
 
     /// A cell's pixels that carry a label.
     struct Part {

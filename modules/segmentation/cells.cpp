@@ -78,6 +78,7 @@ class CellSegmenter : public Segmenter {
     std::vector<Candidate> candidates_;  // of each region
     std::vector<Target> targets_;        // of each region
     std::vector<int> changed_, next_changed_;
+    std::vector<std::uint8_t> waits_;      // cells in next_changed_
     std::vector<CellGrid::Part> waiting_;  // to be summed
     std::vector<RegionSums> region_sums_;
     std::vector<MergeRegion> pieces_;  // the regions once more, as merging takes them
@@ -131,6 +132,7 @@ void CellSegmenter::label_cells(const BorderBand& band) {
     const std::vector<std::uint16_t>& labels = grower_.label_of_cell();
     const int columns = grid_.columns(), rows = grid_.rows();
     cell_labels_.resize(static_cast<std::size_t>(grid_.size()));
+    waits_.assign(cell_labels_.size(), 0);
     changed_.clear();
     for (int y = 0, i = 0; y < rows; ++y) {
         for (int x = 0; x < columns; ++x, ++i) {
@@ -153,7 +155,7 @@ void CellSegmenter::label_cells(const BorderBand& band) {
                 changed_.push_back(i);
                 label_cell({x, y}, list, band);
             } else {
-                grid_.clear({x, y});
+                grid_.fill({x, y}, 0);
             }
         }
     }
@@ -171,7 +173,9 @@ void CellSegmenter::label_pixels(const BorderBand& band) {
     const std::vector<std::uint16_t>& labels = grower_.label_of_cell();
     const int columns = grid_.columns(), rows = grid_.rows();
     const auto offer_on = [&](int cell, std::uint16_t label) {
-        if (labels[cell] == 0 && offer(cell, label)) next_changed_.push_back(cell);
+        if (labels[cell] != 0 || !offer(cell, label) || waits_[cell] != 0) return;
+        waits_[cell] = 1;
+        next_changed_.push_back(cell);
     };
     constexpr int kRounds = 32;
     constexpr int kEnough = kCellPx * kCellPx / 10;
@@ -188,10 +192,11 @@ void CellSegmenter::label_pixels(const BorderBand& band) {
                 if (y + 1 < rows) offer_on(i + columns, list.label[k]);
             }
         }
-        std::sort(next_changed_.begin(), next_changed_.end());
-        next_changed_.erase(std::unique(next_changed_.begin(), next_changed_.end()), next_changed_.end());
         changed_.swap(next_changed_);
-        for (const int i : changed_) label_cell(grid_.place(i), cell_labels_[i], band);
+        for (const int i : changed_) {
+            label_cell(grid_.place(i), cell_labels_[i], band);
+            waits_[i] = 0;
+        }
     }
 }
 
@@ -318,11 +323,15 @@ void CellSegmenter::make_regions(std::vector<PlanarRegion>& regions) {
 }
 
 void CellSegmenter::rename_labels() {
+    const auto stays = [&](std::uint16_t label) { return new_label_[label] == label; };
     for (int i = 0; i < grid_.size(); ++i) {
         const CellLabels& list = cell_labels_[i];
-        const auto end = list.label.begin() + list.size;
-        if (std::any_of(list.label.begin(), end, [&](std::uint16_t l) { return new_label_[l] != l; }))
+        if (list.size == 0 || (list.size == 1 && stays(list.label[0]))) continue;
+        if (list.pixels[0] == kCellPx * kCellPx) {
+            grid_.fill(grid_.place(i), new_label_[list.label[0]]);
+        } else if (!std::all_of(list.label.begin(), list.label.begin() + list.size, stays)) {
             grid_.rename(grid_.place(i), new_label_);
+        }
     }
 }
 

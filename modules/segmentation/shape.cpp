@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <utility>
@@ -62,6 +63,20 @@ bool Block<4>::uniform() const {
         std::memcpy(&rows[v], first + static_cast<std::ptrdiff_t>(v) * stride, sizeof(rows[v]));
     const std::uint64_t all = *first * std::uint64_t{0x0001000100010001};
     return ((rows[0] ^ all) | (rows[1] ^ all) | (rows[2] ^ all) | (rows[3] ^ all)) == 0;
+}
+
+template <>
+int Block<4>::count(std::uint16_t label) const {
+    // The highest bit of each 16 is set where a label is another, after x | (x without it + 0x7fff).
+    constexpr std::uint64_t kLow = 0x7fff7fff7fff7fff, kOne = 0x0001000100010001;
+    int others = 0;
+    for (int v = 0; v < 4; ++v) {
+        std::uint64_t row;
+        std::memcpy(&row, first + v * stride, sizeof(row));
+        row ^= label * kOne;
+        others += std::popcount((row | ((row & kLow) + kLow)) & ~kLow);
+    }
+    return 16 - others;
 }
 
 /// True when 16 columns of four rows carry one label.
