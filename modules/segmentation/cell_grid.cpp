@@ -60,22 +60,22 @@ Candidate CellGrid::candidate(const InverseDepthPlane& plane, std::uint16_t labe
             scale * plane.b / camera.fy, d, label};
 }
 
-std::uint16_t CellGrid::depth_at(int cell, const Candidate& candidate) const {
-    const double line =
-        candidate.start + candidate.right * (u_of(cell) + 3.5) + candidate.down * (v_of(cell) + 3.5);
+std::uint16_t CellGrid::depth_at(Place cell, const Candidate& candidate) const {
+    const double line = candidate.start + candidate.right * (cell.x * kCellPx + 3.5) +
+                        candidate.down * (cell.y * kCellPx + 3.5);
     return static_cast<std::uint16_t>(candidate.d / std::max(line, candidate.d / 65534));
 }
 
-void CellGrid::label(int cell, const BorderBand& band, std::span<const Candidate> candidates,
+void CellGrid::label(Place cell, const BorderBand& band, std::span<const Candidate> candidates,
                      std::uint8_t* pixels) {
-    const int u = u_of(cell), v = v_of(cell);
+    const int u = cell.x * kCellPx, v = cell.y * kCellPx;
     kernels_->label(rules_, band, {depth_->row(v) + u, labels_.row(v) + u, depth_->width, u, v},
                     candidates.data(), std::min(candidates.size(), kMaxCandidates), pixels);
 }
 
-void CellGrid::clear(int cell) {
+void CellGrid::clear(Place cell) {
     for (int row = 0; row < kCellPx; ++row)
-        std::fill_n(labels_.row(v_of(cell) + row) + u_of(cell), kCellPx, std::uint16_t{0});
+        std::fill_n(labels_.row(cell.y * kCellPx + row) + cell.x * kCellPx, kCellPx, std::uint16_t{0});
 }
 
 void CellGrid::sum(std::span<const Part> parts, PointSums* sums) const {
@@ -83,7 +83,7 @@ void CellGrid::sum(std::span<const Part> parts, PointSums* sums) const {
     std::array<LabelledPixels, kGroup> sets;
     for (std::size_t k = 0; k < sets.size(); ++k) {
         const Part& part = parts[std::min(k, parts.size() - 1)];
-        const int u = u_of(part.cell), v = v_of(part.cell);
+        const int u = part.cell.x * kCellPx, v = part.cell.y * kCellPx;
         sets[k] = {depth_->row(v) + u, labels_.row(v) + u, depth_->width, u, v, part.label, part.reference};
     }
     std::array<PointSums, kGroup> all;
@@ -91,8 +91,8 @@ void CellGrid::sum(std::span<const Part> parts, PointSums* sums) const {
     std::copy_n(all.begin(), parts.size(), sums);
 }
 
-void CellGrid::rename(int cell, std::span<const std::uint16_t> new_label) {
-    const int u = u_of(cell), v = v_of(cell);
+void CellGrid::rename(Place cell, std::span<const std::uint16_t> new_label) {
+    const int u = cell.x * kCellPx, v = cell.y * kCellPx;
     for (int row = 0; row < kCellPx; ++row) {
         std::uint16_t* pixels = labels_.row(v + row) + u;
         for (int i = 0; i < kCellPx; ++i) pixels[i] = new_label[pixels[i]];

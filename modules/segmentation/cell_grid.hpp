@@ -30,20 +30,27 @@ class CellGrid {
     /// Unweighted sums over the valid pixels of each cell.
     const std::vector<PointSums>& sums() const { return sums_; }
 
+    /// A cell's column and row.
+    struct Place {
+        int x, y;
+    };
+    Place place(int cell) const { return {cell % columns_, cell / columns_}; }
+
     /// A plane as label() takes it.
     Candidate candidate(const InverseDepthPlane& plane, std::uint16_t label) const;
     /// The reading that a plane gives in the middle of a cell, kept within what a reading can be.
-    std::uint16_t depth_at(int cell, const Candidate& candidate) const;
+    std::uint16_t depth_at(Place cell, const Candidate& candidate) const;
 
     /// See CellKernels::label.
-    void label(int cell, const BorderBand& band, std::span<const Candidate> candidates, std::uint8_t* pixels);
+    void label(Place cell, const BorderBand& band, std::span<const Candidate> candidates,
+               std::uint8_t* pixels);
 
     /// Gives a cell's pixels the label 0.
-    void clear(int cell);
+    void clear(Place cell);
 
     /// A cell's pixels that carry a label.
     struct Part {
-        int cell = 0;
+        Place cell{};
         std::uint16_t label = 0;
         std::uint16_t reference = 1;  ///< a reading near theirs
     };
@@ -51,14 +58,11 @@ class CellGrid {
     void sum(std::span<const Part> parts, PointSums* sums) const;
 
     /// Gives the pixels of a cell new labels: `new_label[old]`.
-    void rename(int cell, std::span<const std::uint16_t> new_label);
+    void rename(Place cell, std::span<const std::uint16_t> new_label);
     /// Hands over the labels, of the image's size; takes the buffers of `out` for the next image.
     void take_labels(Image<std::uint16_t>& out);
 
   private:
-    int u_of(int cell) const { return cell % columns_ * kCellPx; }
-    int v_of(int cell) const { return cell / columns_ * kCellPx; }
-
     const CellKernels* kernels_;
     CellRules rules_;
     const DepthImage* depth_ = nullptr;  // the image, or padded_

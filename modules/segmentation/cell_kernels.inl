@@ -159,12 +159,6 @@ void to_points(const CellSums& s, const Centres& at, const CellRules& rules, Poi
         out[k] = {n[k], px[k], py[k], z[k], xx[k], xy[k], xz[k], yy[k], yz[k], zz[k]};
 }
 
-Float8 root(const Float8& x) {
-    Float8 y = x;
-    for (std::size_t k = 0; k < 8; ++k) y[k] = std::sqrt(x[k]);
-    return y;
-}
-
 /// Least squares of relative depth in each cell: the a, b, c that minimise the sum of (1 - r w)^2 with
 /// r = z / reference and w = 1 + c + a u + b v. All is written in differences to 1, so that nothing cancels.
 void fit_cells(const CellSums& s, const Centres& at, const CellRules& rules, Cell* out) {
@@ -192,20 +186,16 @@ void fit_cells(const CellSums& s, const Centres& at, const CellRules& rules, Cel
     const Float8 w = (one - mr) * unit, mse = mse_one * unit * unit;
     const Float8 a_px = slope_u * unit, b_px = slope_v * unit;
     const Float8 a = a_px * fx, b = b_px * fy;
-    Float8 x = mu * (1 / fx), y = mv * (1 / fy);
-    for (std::size_t i = 0; i < 8; ++i) {
-        x[i] += static_cast<float>(at.x[i]);
-        y[i] += static_cast<float>(at.y[i]);
-    }
+    const Float8 x = to_float(at.x) + mu * (1 / fx), y = to_float(at.y) + mv * (1 / fy);
     const Float8 c = w - a * x - b * y;
-    const Float8 per_steepness = one / root(a * a + b * b + c * c);
+    const Float8 per_steepness = one / square_root(a * a + b * b + c * c);
 
     // The sensor's noise, with the rounding to raw units.
     const Float8 z = one / w, off = z - static_cast<float>(rules.noise.offset_m);
     const Float8 noise = splat(static_cast<float>(rules.noise.base_m)) +
                          off * off * static_cast<float>(rules.noise.quadratic_per_m);
     const auto rounding = static_cast<float>(1 / (12 * rules.units_per_metre * rules.units_per_metre));
-    const Float8 sigma = root(noise * noise + rounding), sigma_w = sigma * w * w;
+    const Float8 sigma = square_root(noise * noise + rounding), sigma_w = sigma * w * w;
     // At a grazing angle an error of the pixel's place becomes one of depth.
     const auto lateral = static_cast<float>(rules.lateral_px * rules.lateral_px);
     const auto planarity = static_cast<float>(rules.planarity_sigmas * rules.planarity_sigmas);
@@ -218,7 +208,7 @@ void fit_cells(const CellSums& s, const Centres& at, const CellRules& rules, Cel
     const Float8 error = sigma * w * (fx / kCellPx);
     const auto cosine = static_cast<float>(std::cos(rules.grow_angle_rad)),
                sine = static_cast<float>(std::sin(rules.grow_angle_rad));
-    const Float8 cos_sum = (splat(cosine) - error * sine) / root(one + error * error);
+    const Float8 cos_sum = (splat(cosine) - error * sine) / square_root(one + error * error);
     constexpr float kWidest = 0.17f;  // of about 80 degrees
     const Float8 cos_limit = select(cos_sum > splat(kWidest), cos_sum, splat(kWidest));
     const float fxx = 1 / (fx * fx), fxy = 1 / (fx * fy), fyy = 1 / (fy * fy);
@@ -298,12 +288,9 @@ void fit(const CellRules& rules, const CellGroup& group, Cell* cells, PointSums*
         for (int k = 0; k < 8; ++k) cells[k] = Cell{}, sums[k] = PointSums{};
         return;
     }
-    Centres at;
-    const double per_fx = 1 / rules.camera.fx, y = (group.v + 3.5 - rules.camera.cy) / rules.camera.fy;
-    for (int k = 0; k < 8; ++k) {
-        at.x[k] = (group.u + k * kCellPx + 3.5 - rules.camera.cx) * per_fx;
-        at.y[k] = y;
-    }
+    const double x = (group.u + 3.5 - rules.camera.cx) / rules.camera.fx, step = kCellPx / rules.camera.fx;
+    const Centres at{splat(x) + Double8{0, 1, 2, 3, 4, 5, 6, 7} * step,
+                     splat((group.v + 3.5 - rules.camera.cy) / rules.camera.fy)};
     const CellSums s = collector.sums();
     fit_cells(s, at, rules, cells);
     to_points(s, at, rules, sums);

@@ -20,6 +20,9 @@ namespace {
 
 constexpr double kRadians = std::numbers::pi / 180;
 
+/// Cosine of the angle between surfaces that cannot be one.
+constexpr float kSimilar = 0.6f;
+
 class CellSegmenter : public Segmenter {
   public:
     CellSegmenter(const CellOptions& options, const CellKernels& kernels)
@@ -57,12 +60,12 @@ class CellSegmenter : public Segmenter {
 
     CellRules rules_for(const CameraInfo& camera) const;
     void label_pixels(const BorderBand& band);
-    void offer_to_neighbours();
-    void label_cell(int cell, const BorderBand& band);
+    void label_cells(const BorderBand& band);
+    void label_cell(CellGrid::Place place, CellLabels& list, const BorderBand& band);
     bool offer(int cell, std::uint16_t label);
     void sum_regions(const CameraInfo& camera);
     void sum_waiting(const DepthNoise& noise);
-    void add_sums(const DepthNoise& noise, std::uint16_t label, const PointSums& part);
+    void add_sums(const DepthNoise& noise, std::uint16_t label, const PointSums& part, int cells);
     void merge_pieces(const CameraInfo& camera);
     void make_regions(std::vector<PlanarRegion>& regions);
     void rename_labels();
@@ -73,11 +76,12 @@ class CellSegmenter : public Segmenter {
     RegionGrower grower_;
     std::vector<CellLabels> cell_labels_;
     std::vector<Candidate> candidates_;  // of each region
+    std::vector<Target> targets_;        // of each region
     std::vector<int> changed_, next_changed_;
     std::vector<CellGrid::Part> waiting_;  // to be summed
     std::vector<RegionSums> region_sums_;
     std::vector<MergeRegion> pieces_;  // the regions once more, as merging takes them
-    std::vector<Touch> touching_;
+    TouchList touching_;
     std::vector<std::uint16_t> order_, new_label_;
     ShapeTracer tracer_;
 };
@@ -103,23 +107,26 @@ bool CellSegmenter::offer(int cell, std::uint16_t label) {
     CellLabels& list = cell_labels_[cell];
     const auto end = list.label.begin() + list.size;
     if (list.size == list.label.size() || std::find(list.label.begin(), end, label) != end) return false;
+    // A stripe of a surface that lies otherwise is not part of the plane that cuts it.
+    const Cell& fitted = grid_.cells()[cell];
+    if (fitted.planar() && targets_[label - 1].cosine(fitted) < std::min(fitted.cos_limit, kSimilar))
+        return false;
     list.label[list.size] = label;
     list.pixels[list.size++] = 0;
     return true;
 }
 
-void CellSegmenter::label_cell(int cell, const BorderBand& band) {
-    CellLabels& list = cell_labels_[cell];
+void CellSegmenter::label_cell(CellGrid::Place place, CellLabels& list, const BorderBand& band) {
     if (list.size == 1) {
-        grid_.label(cell, band, std::span(candidates_).subspan(list.label[0] - 1, 1), list.pixels.data());
+        grid_.label(place, band, std::span(candidates_).subspan(list.label[0] - 1, 1), list.pixels.data());
         return;
     }
     std::array<Candidate, kMaxCandidates> candidates;
     for (std::size_t k = 0; k < list.size; ++k) candidates[k] = candidates_[list.label[k] - 1];
-    grid_.label(cell, band, std::span(candidates).first(list.size), list.pixels.data());
+    grid_.label(place, band, std::span(candidates).first(list.size), list.pixels.data());
 }
 
-void CellSegmenter::offer_to_neighbours() {
+void CellSegmenter::label_cells(const BorderBand& band) {
     // A cell of a region keeps to that region, and offers its label to the eight cells around it.
     const std::vector<std::uint16_t>& labels = grower_.label_of_cell();
     const int columns = grid_.columns(), rows = grid_.rows();
@@ -132,18 +139,21 @@ void CellSegmenter::offer_to_neighbours() {
             if (labels[i] != 0) {
                 list.size = 1;
                 list.label[0] = labels[i];
-            } else {
-                for (int ny = std::max(0, y - 1); ny <= std::min(rows - 1, y + 1); ++ny) {
-                    for (int nx = std::max(0, x - 1); nx <= std::min(columns - 1, x + 1); ++nx) {
-                        const std::uint16_t label = labels[ny * columns + nx];
-                        if (label != 0) offer(i, label);
-                    }
+                grid_.label({x, y}, band, {&candidates_[labels[i] - 1], 1}, list.pixels.data());
+                continue;
+            }
+            const int left = x > 0 ? -1 : 0, right = x + 1 < columns ? 1 : 0;
+            for (int down = y > 0 ? -1 : 0; down <= (y + 1 < rows ? 1 : 0); ++down) {
+                const std::uint16_t* row = &labels[i + down * columns];
+                for (int k = left; k <= right; ++k) {
+                    if (row[k] != 0) offer(i, row[k]);
                 }
             }
             if (list.size > 0) {
                 changed_.push_back(i);
+                label_cell({x, y}, list, band);
             } else {
-                grid_.clear(i);
+                grid_.clear({x, y});
             }
         }
     }
@@ -151,10 +161,13 @@ void CellSegmenter::offer_to_neighbours() {
 
 void CellSegmenter::label_pixels(const BorderBand& band) {
     candidates_.clear();
-    for (const InverseDepthPlane& plane : grower_.planes())
-        candidates_.push_back(grid_.candidate(plane, static_cast<std::uint16_t>(candidates_.size() + 1)));
+    targets_.clear();
+    for (const InverseDepthPlane& plane : grower_.planes()) {
+        targets_.emplace_back(plane);
+        candidates_.push_back(grid_.candidate(plane, static_cast<std::uint16_t>(targets_.size())));
+    }
+    label_cells(band);
     // A cell without region where enough pixels took a label offers it on to its four neighbours.
-    offer_to_neighbours();
     const std::vector<std::uint16_t>& labels = grower_.label_of_cell();
     const int columns = grid_.columns(), rows = grid_.rows();
     const auto offer_on = [&](int cell, std::uint16_t label) {
@@ -162,12 +175,10 @@ void CellSegmenter::label_pixels(const BorderBand& band) {
     };
     constexpr int kRounds = 8;
     constexpr int kEnough = kCellPx * kCellPx / 4;
-    for (int round = 0; round < kRounds && !changed_.empty(); ++round) {
-        for (const int i : changed_) label_cell(i, band);
+    for (int round = 1; round < kRounds && !changed_.empty(); ++round) {
         next_changed_.clear();
         for (const int i : changed_) {
-            if (labels[i] != 0) continue;
-            const int x = i % columns, y = i / columns;
+            const auto [x, y] = grid_.place(i);
             const CellLabels& list = cell_labels_[i];
             for (std::size_t k = 0; k < list.size; ++k) {
                 if (list.pixels[k] < kEnough) continue;
@@ -180,6 +191,7 @@ void CellSegmenter::label_pixels(const BorderBand& band) {
         std::sort(next_changed_.begin(), next_changed_.end());
         next_changed_.erase(std::unique(next_changed_.begin(), next_changed_.end()), next_changed_.end());
         changed_.swap(next_changed_);
+        for (const int i : changed_) label_cell(grid_.place(i), cell_labels_[i], band);
     }
 }
 
@@ -193,37 +205,53 @@ void add_unbiased(PointSums& to, PointSums part, double relative2) {
     to.add(1 / relative2, part);
 }
 
-void CellSegmenter::add_sums(const DepthNoise& noise, std::uint16_t label, const PointSums& part) {
+void CellSegmenter::add_sums(const DepthNoise& noise, std::uint16_t label, const PointSums& part, int cells) {
     const double z = part.zz / part.z, sigma = std::clamp(noise.sigma(z), 1e-6, 0.1 * z);
     RegionSums& region = region_sums_[label - 1];
     region.points += part;
-    ++region.cells;
+    region.cells += cells;
     add_unbiased(region.weighted, part, sigma * sigma / (z * z));
 }
 
 void CellSegmenter::sum_waiting(const DepthNoise& noise) {
     std::array<PointSums, 8> sums;
     grid_.sum(waiting_, sums.data());
-    for (std::size_t k = 0; k < waiting_.size(); ++k) add_sums(noise, waiting_[k].label, sums[k]);
+    for (std::size_t k = 0; k < waiting_.size(); ++k) add_sums(noise, waiting_[k].label, sums[k], 1);
     waiting_.clear();
 }
 
 void CellSegmenter::sum_regions(const CameraInfo& camera) {
     region_sums_.assign(grower_.planes().size(), {});
     waiting_.clear();
+    // Whole cells in a row are weighted together, a few at a time so that their depth hardly differs.
+    constexpr int kRun = 4;
+    struct Run {
+        PointSums sums;
+        std::uint16_t label = 0;
+        int cells = 0;
+    } run;
+    const auto end_run = [&] {
+        if (run.cells > 0) add_sums(camera.noise, run.label, run.sums, run.cells);
+        run = {};
+    };
     for (int i = 0; i < grid_.size(); ++i) {
         const CellLabels& list = cell_labels_[i];
         const PointSums& whole = grid_.sums()[i];
         for (std::size_t k = 0; k < list.size; ++k) {
             if (list.pixels[k] == 0) continue;
             if (list.pixels[k] == whole.n) {
-                add_sums(camera.noise, list.label[k], whole);
+                if (run.label != list.label[k] || run.cells == kRun) end_run();
+                run.label = list.label[k];
+                run.sums += whole;
+                ++run.cells;
                 continue;
             }
-            waiting_.push_back({i, list.label[k], grid_.depth_at(i, candidates_[list.label[k] - 1])});
+            const CellGrid::Place place = grid_.place(i);
+            waiting_.push_back({place, list.label[k], grid_.depth_at(place, candidates_[list.label[k] - 1])});
             if (waiting_.size() == 8) sum_waiting(camera.noise);
         }
     }
+    end_run();
     if (!waiting_.empty()) sum_waiting(camera.noise);
 }
 
@@ -236,10 +264,11 @@ void CellSegmenter::merge_pieces(const CameraInfo& camera) {
     touching_.clear();
     const int columns = grid_.columns();
     const auto meet = [&](const CellLabels& one, const CellLabels& other) {
+        if (one.size == 1 && other.size == 1 && one.label[0] == other.label[0]) return;
         for (std::size_t k = 0; k < one.size; ++k) {
             for (std::size_t m = 0; m < other.size; ++m) {
                 if (one.label[k] != other.label[m] && one.pixels[k] > 0 && other.pixels[m] > 0)
-                    touching_.push_back({one.label[k], other.label[m], 0, 1});
+                    touching_.add(one.label[k], other.label[m], false, true);
             }
         }
     };
@@ -293,7 +322,7 @@ void CellSegmenter::rename_labels() {
         const CellLabels& list = cell_labels_[i];
         const auto end = list.label.begin() + list.size;
         if (std::any_of(list.label.begin(), end, [&](std::uint16_t l) { return new_label_[l] != l; }))
-            grid_.rename(i, new_label_);
+            grid_.rename(grid_.place(i), new_label_);
     }
 }
 

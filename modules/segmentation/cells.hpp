@@ -14,7 +14,7 @@ namespace planemap {
 /// brought to pixel-sharp borders, and fitted again. Lengths that stand beside a number of sigmas are lower
 /// bounds: the tolerance at depth z is the larger of the length and that many times camera.noise.sigma(z).
 struct CellOptions {
-    double min_region_fraction = 0.005;  ///< smallest region as a share of the image's pixels
+    double min_region_fraction = 0.007;  ///< smallest region as a share of the image's pixels
     double min_fill = 0.6;               ///< share of a cell's pixels that must be valid for a fit
     double planarity_sigmas = 1.2;       ///< largest RMS of a planar cell
     double lateral_px = 0.5;             ///< standard deviation of where a reading was taken, pixels
@@ -24,7 +24,7 @@ struct CellOptions {
     double grow_sigmas = 1.5;            ///< see above
     double grow_angle_deg = 15;   ///< largest angle between cell and region, beyond the cell's own error
     double merge_m = 0.009;       ///< by how much two regions may leave their common plane (RMS), metres
-    double merge_sigmas = 1.5;    ///< see above
+    double merge_sigmas = 2.0;    ///< see above
     double merge_angle_deg = 30;  ///< largest angle between two regions to be merged
     double bend_deg = 25;         ///< a region that turns by more from end to end is curved: no plane
     double thickness_m = 0.015;   ///< largest distance of a pixel to its region's plane, metres

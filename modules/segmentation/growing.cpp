@@ -21,31 +21,6 @@ std::array<int, 4> neighbour_steps(const CellMap& map) {
     return {1, map.columns, -1, -map.columns};
 }
 
-/// A region's plane as cells are held against it.
-struct Target {
-    float a, b, c, steepness, nx, ny, nz;
-
-    explicit Target(const InverseDepthPlane& plane)
-        : a(static_cast<float>(plane.a)),
-          b(static_cast<float>(plane.b)),
-          c(static_cast<float>(plane.c)),
-          steepness(static_cast<float>(plane.steepness())),
-          nx(a / steepness),
-          ny(b / steepness),
-          nz(c / steepness) {}
-
-    bool accepts(const Cell& cell) const {
-        const float offset = cell.w - (a * cell.x + b * cell.y + c);
-        return std::abs(offset) <= cell.reach * steepness &&
-               nx * cell.nx + ny * cell.ny + nz * cell.nz >= cell.cos_limit;
-    }
-    /// Mean squared residual of w of the cell's pixels.
-    float mse_to(const Cell& cell) const {
-        const float offset = cell.w - (a * cell.x + b * cell.y + c), da = cell.a - a, db = cell.b - b;
-        return cell.mse + offset * offset + da * da * cell.xx + 2 * da * db * cell.xy + db * db * cell.yy;
-    }
-};
-
 /// What makes a cell's sums a part of a region's: its inverse depths weighted by 1 / variance.
 double weight(const Cell& cell) {
     const double k = 1 / (static_cast<double>(cell.w) * static_cast<double>(cell.sigma));
@@ -180,20 +155,7 @@ void RegionGrower::grow_from(const CellMap& map, int seed, double min_pixels) {
             refit();
             next_fit = region.cells + 1 + region.cells / 8;
         }
-        if (region.cells < kFirstFit) continue;
-        refit();
-        if (pass > 0) continue;
-        // Let go of what the plane that came out does not accept.
-        region.sums = {};
-        region.pixels = 0;
-        region.cells = 0;
-        grown_.swap(queue_);
-        queue_.clear();
-        for (const int i : grown_) {
-            label_of_cell_[i] = 0;
-            if (target.accepts(map.cells[i])) add(i);
-        }
-        refit();
+        if (region.cells >= kFirstFit) refit();
     }
     if (region.pixels < min_pixels || !region.fit.valid) {
         for (const int i : queue_) label_of_cell_[i] = 0, tried_[i] = 1;
@@ -204,61 +166,63 @@ void RegionGrower::grow_from(const CellMap& map, int seed, double min_pixels) {
 }
 
 void RegionGrower::settle_borders(const CellMap& map) {
-    // Early regions took cells that a later one fits better.
+    // Early regions took cells that a later one fits better. Planes change when all cells have been asked.
     const std::array<int, 4> steps = neighbour_steps(map);
+    targets_.clear();
+    for (const MergeRegion& region : regions_) targets_.emplace_back(region.fit.plane);
     for (int i = 0; i < static_cast<int>(map.cells.size()); ++i) {
-        std::uint16_t& label = label_of_cell_[i];
-        if (links_[i] == 0) continue;
-        const Cell& cell = map.cells[i];
+        const std::uint8_t links = links_[i];
+        if (links == 0) continue;
+        const std::uint16_t label = label_of_cell_[i];
         float best = -1;
         std::uint16_t best_label = label;
         for (int k = 0; k < 4; ++k) {
-            if ((links_[i] >> k & 1) == 0) continue;
+            if ((links >> k & 1) == 0) continue;
             const std::uint16_t other = label_of_cell_[i + steps[k]];
             if (other == 0 || other == label) continue;
-            if (best < 0) best = label == 0 ? 1e30f : Target(regions_[label - 1].fit.plane).mse_to(cell);
-            const Target target(regions_[other - 1].fit.plane);
-            const float mse = target.mse_to(cell);
-            if (mse < best && target.accepts(cell)) best = mse, best_label = other;
+            const Cell& cell = map.cells[i];
+            if (best < 0) best = label == 0 ? 1e30f : targets_[label - 1].mse_to(cell);
+            const float mse = targets_[other - 1].mse_to(cell);
+            if (mse < best && targets_[other - 1].accepts(cell)) best = mse, best_label = other;
         }
-        label = best_label;
-    }
-    resum(map);
-}
-
-void RegionGrower::resum(const CellMap& map) {
-    for (MergeRegion& region : regions_) region = MergeRegion{};
-    for (std::size_t i = 0; i < map.cells.size(); ++i) {
-        if (label_of_cell_[i] == 0) continue;
-        MergeRegion& region = regions_[label_of_cell_[i] - 1];
-        region.sums.add(weight(map.cells[i]), map.sums[i]);
-        region.pixels += map.sums[i].n;
-        ++region.cells;
+        if (best_label == label) continue;
+        if (label != 0) move(map, i, label, -1);
+        move(map, i, best_label, 1);
+        label_of_cell_[i] = best_label;
     }
     for (MergeRegion& region : regions_) region.fit = region.sums.fit();
+}
+
+void RegionGrower::move(const CellMap& map, int cell, std::uint16_t label, int sign) {
+    MergeRegion& region = regions_[label - 1];
+    region.sums.add(sign * weight(map.cells[cell]), map.sums[cell]);
+    region.pixels += sign * map.sums[cell].n;
+    region.cells += sign;
 }
 
 void RegionGrower::find_touching(const CellMap& map) {
     // Pairs of regions with cells side by side, or with up to kGap other cells between them.
     constexpr int kGap = 4;
     touching_.clear();
-    const auto look = [&](std::size_t from, int steps, std::ptrdiff_t stride, int link_bit) {
+    const auto look = [&](int from, int steps, int stride, int link_bit) {
         const std::uint16_t a = label_of_cell_[from];
         for (int k = 1; k <= steps; ++k) {
-            const std::uint16_t b = label_of_cell_[from + static_cast<std::size_t>(k * stride)];
+            const std::uint16_t b = label_of_cell_[from + k * stride];
             if (b == a) return;
             if (b == 0) continue;
             const bool linked = k == 1 && (links_[from] >> link_bit & 1) != 0;
-            touching_.push_back({std::min(a, b), std::max(a, b), linked ? 1 : 0, k == 1 ? 1 : 0});
+            touching_.add(a, b, linked, k == 1);
             return;
         }
     };
-    for (int y = 0; y < map.rows; ++y) {
-        for (int x = 0; x < map.columns; ++x) {
-            const auto i = static_cast<std::size_t>(y * map.columns + x);
-            if (label_of_cell_[i] == 0) continue;
-            look(i, std::min(kGap + 1, map.columns - 1 - x), 1, 0);
-            look(i, std::min(kGap + 1, map.rows - 1 - y), map.columns, 1);
+    for (int y = 0, i = 0; y < map.rows; ++y) {
+        for (int x = 0; x < map.columns; ++x, ++i) {
+            const std::uint16_t label = label_of_cell_[i];
+            if (label == 0) continue;
+            if (x + 1 < map.columns && label_of_cell_[i + 1] != label)
+                look(i, std::min(kGap + 1, map.columns - 1 - x), 1, 0);
+            if (y + 1 < map.rows && label_of_cell_[i + map.columns] != label)
+                look(i, std::min(kGap + 1, map.rows - 1 - y), map.columns, 1);
         }
     }
 }
@@ -351,23 +315,25 @@ void RegionGrower::find_smooth_borders(const CellMap& map) {
     const auto surest =
         static_cast<float>(std::tan(limit) * map.cell_x);  // error of a normal: sigma w / cell_x
     const std::array<int, 4> steps = neighbour_steps(map);
-    for (int i = 0; i < static_cast<int>(map.cells.size()); ++i) {
-        const std::uint16_t label = label_of_cell_[i];
-        if (label == 0) continue;
-        const Cell& cell = map.cells[i];
-        const int x = i % map.columns, y = i / map.columns;
-        const std::array<bool, 4> exists{x + 1 < map.columns, y + 1 < map.rows, x > 0, y > 0};
-        for (int k = 0; k < 4; ++k) {
-            const int j = i + steps[k];
-            if (!exists[k] || label_of_cell_[j] == label) continue;
-            Border& border = borders_[label - 1];
-            ++border.length;
-            if ((links_[i] >> k & 1) == 0) continue;
-            const Cell& other = map.cells[j];
-            if (other.sigma * other.w > surest) continue;
-            const Target target(regions_[label - 1].fit.plane);
-            const float to_region = target.nx * other.nx + target.ny * other.ny + target.nz * other.nz;
-            if (to_region < turned && cosine(cell, other) > similar) ++border.smooth;
+    targets_.clear();
+    for (const MergeRegion& region : regions_) targets_.emplace_back(region.fit.plane);
+    for (int y = 0, i = 0; y < map.rows; ++y) {
+        for (int x = 0; x < map.columns; ++x, ++i) {
+            const std::uint16_t label = label_of_cell_[i];
+            if (label == 0) continue;
+            const std::array<bool, 4> exists{x + 1 < map.columns, y + 1 < map.rows, x > 0, y > 0};
+            for (int k = 0; k < 4; ++k) {
+                const int j = i + steps[k];
+                if (!exists[k] || label_of_cell_[j] == label) continue;
+                Border& border = borders_[label - 1];
+                ++border.length;
+                if ((links_[i] >> k & 1) == 0) continue;
+                const Cell& other = map.cells[j];
+                if (other.sigma * other.w > surest) continue;
+                const Target& target = targets_[label - 1];
+                const float to_region = target.nx * other.nx + target.ny * other.ny + target.nz * other.nz;
+                if (to_region < turned && cosine(map.cells[i], other) > similar) ++border.smooth;
+            }
         }
     }
 }
@@ -394,8 +360,8 @@ void RegionGrower::drop_thin(const CellMap& map) {
         return squares_[label - 1u] * kCellsPerSquare < regions_[label - 1u].cells;
     };
     find_touching(map);
-    gather(regions_, touching_);
-    for (const Touch& touch : touching_) {
+    touching_.gather(regions_);
+    for (const Touch& touch : touching_.entries()) {
         const bool first = is_thin(touch.a) && regions_[touch.a - 1u].cells < regions_[touch.b - 1u].cells;
         if (!first && !is_thin(touch.b)) continue;
         const std::uint16_t thin = first ? touch.a : touch.b, other = first ? touch.b : touch.a;

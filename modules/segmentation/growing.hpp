@@ -2,6 +2,7 @@
 // From planar cells to planar regions of whole cells.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -21,6 +22,32 @@ struct CellMap {
     DepthNoise noise;   ///< of the sensor
     std::span<const Cell> cells;
     std::span<const PointSums> sums;  ///< of each cell's pixels
+};
+
+/// A region's plane as cells are held against it.
+struct Target {
+    float a, b, c, steepness, nx, ny, nz;
+
+    explicit Target(const InverseDepthPlane& plane)
+        : a(static_cast<float>(plane.a)),
+          b(static_cast<float>(plane.b)),
+          c(static_cast<float>(plane.c)),
+          steepness(static_cast<float>(plane.steepness())),
+          nx(a / steepness),
+          ny(b / steepness),
+          nz(c / steepness) {}
+
+    bool accepts(const Cell& cell) const {
+        const float offset = cell.w - (a * cell.x + b * cell.y + c);
+        return std::abs(offset) <= cell.reach * steepness && cosine(cell) >= cell.cos_limit;
+    }
+    /// Of the angle to the cell's normal.
+    float cosine(const Cell& cell) const { return nx * cell.nx + ny * cell.ny + nz * cell.nz; }
+    /// Mean squared residual of w of the cell's pixels.
+    float mse_to(const Cell& cell) const {
+        const float offset = cell.w - (a * cell.x + b * cell.y + c), da = cell.a - a, db = cell.b - b;
+        return cell.mse + offset * offset + da * da * cell.xx + 2 * da * db * cell.xy + db * db * cell.yy;
+    }
 };
 
 /// Grows regions of cells that share a plane.
@@ -63,17 +90,19 @@ class RegionGrower {
     Bend bend_of(const CellMap& map, std::uint16_t label) const;
     bool is_curved(const CellMap& map, std::uint16_t label) const;
     void find_touching(const CellMap& map);
-    void resum(const CellMap& map);
+    /// Adds a cell to a region, or takes it away: sign 1 or -1.
+    void move(const CellMap& map, int cell, std::uint16_t label, int sign);
 
     CellOptions options_;
     std::vector<std::uint8_t> links_;  // bit k: neighbour k (right, down, left, up) continues the surface
     std::vector<float> turn_;          // 1 - cosine to the linked neighbour that lies most unlike the cell
     std::vector<std::uint8_t> rank_;   // of each cell as a seed, 0: best
-    std::vector<int> seeds_, queue_, grown_;
+    std::vector<int> seeds_, queue_;
     std::vector<std::uint8_t> tried_;  // cells of a seed that came to nothing
     std::vector<std::uint16_t> label_of_cell_;
     std::vector<MergeRegion> regions_;
-    std::vector<Touch> touching_;
+    std::vector<Target> targets_;  // of the regions
+    TouchList touching_;
     std::vector<Border> borders_;
     std::vector<int> squares_;          // two by two cells, of each region
     std::vector<int> members_, first_;  // cells by region; where each region's begin

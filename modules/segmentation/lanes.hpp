@@ -7,6 +7,7 @@
 // defined here must not be shared between them. Hence the anonymous namespace.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 
@@ -60,6 +61,9 @@ inline Float8 to_float(Int8 x) {
 }
 inline Double8 to_double(Float8 x) {
     return __builtin_convertvector(x, Double8);
+}
+inline Float8 to_float(Double8 x) {
+    return __builtin_convertvector(x, Float8);
 }
 /// a where the mask (a comparison's result) is set, else b.
 template <typename Mask, typename T>
@@ -211,6 +215,9 @@ inline Float8 to_float(const Int8& x) {
 inline Double8 to_double(const Float8& x) {
     return each<double>([&](std::size_t i) { return x[i]; });
 }
+inline Float8 to_float(const Double8& x) {
+    return each<float>([&](std::size_t i) { return x[i]; });
+}
 template <typename Mask, typename T>
 inline T select(const Mask& mask, const T& a, const T& b) {
     T out;
@@ -286,6 +293,15 @@ inline Float8 absolute(const Float8& x) {
 /// All ones where a value lies within low and high, else 0.
 inline Short8 within(const Short8& x, const Short8& low, const Short8& high) {
     return equal(smaller(larger(x, low), high), x);
+}
+inline Float8 square_root(const Float8& x) {
+#if defined(__AVX2__) && !defined(PLANEMAP_PORTABLE_LANES)
+    return reinterpret_cast<Float8>(_mm256_sqrt_ps(reinterpret_cast<__m256>(x)));
+#else
+    Float8 y = x;
+    for (std::size_t k = 0; k < 8; ++k) y[k] = std::sqrt(x[k]);
+    return y;
+#endif
 }
 inline int sum_of(const Short8& x) {
     return ((x[0] + x[1]) + (x[2] + x[3])) + ((x[4] + x[5]) + (x[6] + x[7]));

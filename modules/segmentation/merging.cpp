@@ -45,33 +45,50 @@ std::uint16_t root(const std::vector<MergeRegion>& regions, std::uint16_t label)
     return label;
 }
 
-void gather(const std::vector<MergeRegion>& regions, std::vector<Touch>& touching) {
-    for (Touch& touch : touching) {
+void TouchList::clear() {
+    entries_.clear();
+    recent_.fill(0);
+}
+
+void TouchList::add(std::uint16_t a, std::uint16_t b, bool linked, bool side_by_side) {
+    if (a > b) std::swap(a, b);
+    std::uint32_t& recent = recent_[(a * 13u + b) % recent_.size()];
+    if (recent == 0 || entries_[recent - 1].a != a || entries_[recent - 1].b != b) {
+        entries_.push_back({a, b});
+        recent = static_cast<std::uint32_t>(entries_.size());
+    }
+    entries_[recent - 1].linked += linked ? 1 : 0;
+    entries_[recent - 1].side_by_side += side_by_side ? 1 : 0;
+}
+
+void TouchList::gather(const std::vector<MergeRegion>& regions) {
+    recent_.fill(0);
+    for (Touch& touch : entries_) {
         const std::uint16_t a = root(regions, touch.a), b = root(regions, touch.b);
         touch.a = std::min(a, b);
         touch.b = std::max(a, b);
     }
-    std::erase_if(touching, [](const Touch& t) { return t.a == t.b; });
-    std::sort(touching.begin(), touching.end(),
+    std::erase_if(entries_, [](const Touch& t) { return t.a == t.b; });
+    std::sort(entries_.begin(), entries_.end(),
               [](const Touch& s, const Touch& t) { return std::pair(s.a, s.b) < std::pair(t.a, t.b); });
     std::size_t count = 0;
-    for (const Touch& touch : touching) {
-        if (count > 0 && touching[count - 1].a == touch.a && touching[count - 1].b == touch.b) {
-            touching[count - 1].linked += touch.linked;
-            touching[count - 1].side_by_side += touch.side_by_side;
+    for (const Touch& touch : entries_) {
+        if (count > 0 && entries_[count - 1].a == touch.a && entries_[count - 1].b == touch.b) {
+            entries_[count - 1].linked += touch.linked;
+            entries_[count - 1].side_by_side += touch.side_by_side;
         } else {
-            touching[count++] = touch;
+            entries_[count++] = touch;
         }
     }
-    touching.resize(count);
+    entries_.resize(count);
 }
 
-void merge_regions(const MergeRules& rules, std::vector<MergeRegion>& regions, std::vector<Touch>& touching) {
-    gather(regions, touching);
+void merge_regions(const MergeRules& rules, std::vector<MergeRegion>& regions, TouchList& touching) {
+    touching.gather(regions);
     while (true) {
         const Touch* best = nullptr;
         double best_cost = 1;
-        for (Touch& touch : touching) {
+        for (Touch& touch : touching.entries()) {
             if (touch.cost < 0) touch.cost = merge_cost(rules, regions, touch);
             if (touch.cost < best_cost) best_cost = touch.cost, best = &touch;
         }
@@ -84,12 +101,12 @@ void merge_regions(const MergeRules& rules, std::vector<MergeRegion>& regions, s
         into.fit = into.sums.fit();
         from = MergeRegion{};
         from.merged_into = into_label;
-        for (Touch& touch : touching) {
+        for (Touch& touch : touching.entries()) {
             if (touch.a == into_label || touch.b == into_label || touch.a == from_label ||
                 touch.b == from_label)
                 touch.cost = -1;
         }
-        gather(regions, touching);
+        touching.gather(regions);
     }
 }
 

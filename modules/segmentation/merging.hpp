@@ -2,6 +2,7 @@
 // Joins regions that are parts of one plane.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -35,16 +36,27 @@ struct Touch {
     double cost = -1;            ///< of merging them: < 1 is good, negative: not known
 };
 
+/// Collects which regions touch, most pairs once only.
+class TouchList {
+  public:
+    void clear();
+    void add(std::uint16_t a, std::uint16_t b, bool linked, bool side_by_side);
+    /// Makes one entry of each pair, a < b, named by what the regions have become part of.
+    void gather(const std::vector<MergeRegion>& regions);
+
+    std::vector<Touch>& entries() { return entries_; }
+
+  private:
+    std::vector<Touch> entries_;
+    std::array<std::uint32_t, 256> recent_{};  // by a hash of the pair: index of its entry + 1
+};
+
 /// Distance along the plane's normal, metres, that a difference of inverse depth at depth z means.
 double distance_of(double inverse_depth, double z, const InverseDepthPlane& plane);
 
-/// Merges pairs that touch, those that fit best first, as long as there are any. Label i + 1 is regions[i];
-/// `touching` may name pairs more than once and in either order. A region that became part of another is left
-/// empty.
-void merge_regions(const MergeRules& rules, std::vector<MergeRegion>& regions, std::vector<Touch>& touching);
-
-/// Makes one entry of each pair, a < b, named by what the regions have become part of.
-void gather(const std::vector<MergeRegion>& regions, std::vector<Touch>& touching);
+/// Merges pairs that touch, those that fit best first, as long as there are any. Label i + 1 is regions[i]. A
+/// region that became part of another is left empty.
+void merge_regions(const MergeRules& rules, std::vector<MergeRegion>& regions, TouchList& touching);
 
 /// What a region has become part of.
 std::uint16_t root(const std::vector<MergeRegion>& regions, std::uint16_t label);

@@ -64,6 +64,20 @@ bool Block<4>::uniform() const {
     return ((rows[0] ^ all) | (rows[1] ^ all) | (rows[2] ^ all) | (rows[3] ^ all)) == 0;
 }
 
+/// True when 16 columns of four rows carry one label.
+bool uniform_strip(const std::uint16_t* first, std::ptrdiff_t stride) {
+    std::array<std::uint16_t, 16> all, changes{};
+    all.fill(*first);
+    for (int v = 0; v < 4; ++v) {
+        for (std::size_t u = 0; u < 16; ++u)
+            changes[u] |=
+                static_cast<std::uint16_t>(first[v * stride + static_cast<std::ptrdiff_t>(u)] ^ all[u]);
+    }
+    std::array<std::uint64_t, 4> any;
+    std::memcpy(any.data(), changes.data(), sizeof(any));
+    return (any[0] | any[1] | any[2] | any[3]) == 0;
+}
+
 /// Where the ray through a pixel meets the plane; the point of the plane nearest to the ray's point at
 /// `farthest_m` along the optical axis if that is nearer or there is no meeting.
 Eigen::Vector3d ray_on_plane(const PinholeCamera& camera, const Plane& plane, const Eigen::Vector2d& pixel,
@@ -98,15 +112,24 @@ void ShapeTracer::find_blocks(const Image<std::uint16_t>& labels) {
     for (int y = 0; y < blocks_.height - 2; ++y) {
         std::uint16_t* out = blocks_.row(y + 1) + 1;
         const int v = y * block_px_, height = std::min(block_px_, labels.height - v);
-        for (int x = 0; x < blocks_.width - 2; ++x) {
-            const int u = x * block_px_, width = std::min(block_px_, labels.width - u);
-            const std::uint16_t* first = labels.row(v) + u;
-            const Block<kSide> whole{first, labels.width, block_px_, block_px_};
-            if (width < block_px_ || height < block_px_) {
-                out[x] = Block<0>{first, labels.width, width, height}.majority();
-            } else {
-                out[x] = whole.uniform() ? *first : whole.majority();
+        const std::uint16_t* row = labels.row(v);
+        const int whole = height == block_px_ ? labels.width / block_px_ : 0;
+        int x = 0;
+        while (x < whole) {
+            if constexpr (kSide == 4) {
+                // Most of the image is the inside of regions: four blocks at once.
+                if (x + 4 <= whole && uniform_strip(row + x * kSide, labels.width)) {
+                    std::fill_n(out + x, 4, row[x * kSide]);
+                    x += 4;
+                    continue;
+                }
             }
+            const Block<kSide> block{row + x * block_px_, labels.width, block_px_, block_px_};
+            out[x++] = block.uniform() ? *block.first : block.majority();
+        }
+        for (; x < blocks_.width - 2; ++x) {
+            const int u = x * block_px_, width = std::min(block_px_, labels.width - u);
+            out[x] = Block<0>{row + u, labels.width, width, height}.majority();
         }
     }
 }

@@ -138,7 +138,7 @@ TEST_P(Kernels, LabelsGoToTheNearestPlaneWithinTheBand) {
     std::array<int, 2> total{};
     for (int cell = 0; cell < grid.size(); ++cell) {
         std::array<std::uint8_t, 2> counts{};
-        grid.label(cell, band, planes, counts.data());
+        grid.label(grid.place(cell), band, planes, counts.data());
         for (std::size_t k = 0; k < 2; ++k) total[k] += counts[k];
     }
     Image<std::uint16_t> labels;
@@ -162,7 +162,7 @@ TEST_P(Kernels, BandWidensWithTheNoise) {
         CellGrid grid(*GetParam());
         grid.reset(depth, rules_for(camera));
         std::uint8_t pixels = 0;
-        grid.label(0, {0.015, sigmas, camera.noise},
+        grid.label({0, 0}, {0.015, sigmas, camera.noise},
                    std::vector<Candidate>{grid.candidate({0, 0, 1 / 4.0}, 1)}, &pixels);
         EXPECT_EQ(pixels, sigmas > 0 ? 64 : 0);
     }
@@ -180,8 +180,8 @@ TEST_P(Kernels, SumsOfPartsEqualBruteForce) {
     std::vector<CellGrid::Part> parts;
     for (int cell = 0; cell < grid.size(); ++cell) {
         std::array<std::uint8_t, 2> counts{};
-        grid.label(cell, {0.03, 0, camera.noise}, planes, counts.data());
-        if (counts[1] > 0) parts.push_back({cell, 2, grid.depth_at(cell, planes[1])});
+        grid.label(grid.place(cell), {0.03, 0, camera.noise}, planes, counts.data());
+        if (counts[1] > 0) parts.push_back({grid.place(cell), 2, grid.depth_at(grid.place(cell), planes[1])});
     }
     std::array<PointSums, 8> sums;
     PointSums total;

@@ -67,7 +67,7 @@ std::string description() {
            "  coh%      of the locally planar pixels (17 x 17 pixels around fit a plane within 2 sigma "
            "RMS):\n"
            "            explained by a plane within 20 deg of the local normal\n"
-           "  off30%    of the locally planar pixels with a label: its plane is more than 30 deg off\n"
+           "  off30%    of the pixels with a label: locally planar, and its plane is more than 30 deg off\n"
            "  rms mm    of the labelled pixels to their planes\n"
            "  rec prec  true and found regions of at least 1000 pixels (at 640 x 480) matched at IoU 0.8\n"
            "  corr over under miss noise   SegComp's instances at 80 % (Hoover et al. 1996)\n"

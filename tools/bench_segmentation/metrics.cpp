@@ -22,7 +22,6 @@ FrameScore& FrameScore::operator+=(const FrameScore& o) {
     explained_pixels += o.explained_pixels;
     planar += o.planar;
     coherent_pixels += o.coherent_pixels;
-    planar_labelled += o.planar_labelled;
     off30_pixels += o.off30_pixels;
     squared_distance += o.squared_distance;
     planes += o.planes;
@@ -62,7 +61,6 @@ FrameScore score_frame(const DepthImage& depth, const CameraInfo& camera,
             score.labelled += 1;
             score.explained_pixels += explained;
             score.coherent_pixels += planar && explained && cosine >= cos20;
-            score.planar_labelled += planar;
             score.off30_pixels += planar && cosine < cos30;
             score.squared_distance += distance * distance;
         }

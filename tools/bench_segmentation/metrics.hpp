@@ -18,15 +18,14 @@ struct FrameScore {
     double explained_pixels = 0;  ///< of these: within tolerance() of the label's plane
     double planar = 0;            ///< locally planar pixels
     double coherent_pixels = 0;   ///< of these: explained by a plane within 20 deg of the local normal
-    double planar_labelled = 0;   ///< locally planar pixels with a label
-    double off30_pixels = 0;      ///< of these: the label's plane is more than 30 deg off the local normal
+    double off30_pixels = 0;      ///< locally planar, labelled: its plane is more than 30 deg off
     double squared_distance = 0;  ///< sum over labelled pixels of the squared distance to the plane, m^2
     double planes = 0, frames = 0;
 
     FrameScore& operator+=(const FrameScore& o);
     double explained() const { return share(explained_pixels, readings); }
     double coherent() const { return share(coherent_pixels, planar); }
-    double off30() const { return share(off30_pixels, planar_labelled); }
+    double off30() const { return share(off30_pixels, labelled); }
     /// Of the labelled pixels to their planes, metres.
     double rms() const;
     double planes_a_frame() const { return share(planes, frames); }
