@@ -73,7 +73,7 @@ TEST_F(FrameScoreTest, APlaneAndItsReverseAreNotTheSame) {
     Segmentation reversed = walls.perfect;
     for (PlanarRegion& region : reversed.regions) region.plane = region.plane.flipped();
     EXPECT_EQ(score(reversed).explained(), 1);
-    EXPECT_EQ(score(reversed).off30(), 1);
+    EXPECT_GT(score(reversed).off30(), 0.99);
 }
 
 TEST_F(FrameScoreTest, HalfTheLabelsAreHalfOfIt) {

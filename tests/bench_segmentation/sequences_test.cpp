@@ -80,6 +80,7 @@ TEST(OpenSequence, TheWallIsOnePlaneAndTheNoiseNone) {
     const BenchFrame frame = noise.load(0);
     EXPECT_NE(frame.depth.pixels, noise.load(1).depth.pixels);
     EXPECT_EQ(frame.depth.pixels, noise.load(0).depth.pixels);
+    EXPECT_TRUE(frame.truth.value().pieces.empty());
     for (const Eigen::Vector3f& normal : local_normals(frame.depth, noise.camera).pixels)
         ASSERT_TRUE(normal.isZero());
 }

@@ -90,7 +90,8 @@ std::string table_line(const Row& row) {
     return name + format(" %8.3f", median(row.ms)) + format(" %8.3f", percentile_95(row.ms)) +
            format(" %7.1f", s.planes_a_frame()) + format(" %6.1f", 100 * s.explained()) +
            format(" %6.1f", 100 * s.coherent()) + format(" %7.2f", 100 * s.off30()) +
-           format(" %7.2f", 1e3 * s.rms()) + " |" + format(" %5.1f", 100 * m.recall(), truth) +
+           format(" %7.2f", 1e3 * s.rms()) + " |" +
+           format(" %5.1f", 100 * m.recall(), truth && m.true_pieces > 0) +
            format(" %6.1f", 100 * m.precision(), truth && m.found > 0) + format(" %5.0f", m.correct, truth) +
            format(" %5.0f", m.over_segmented, truth) + format(" %5.0f", m.under_segmented, truth) +
            format(" %5.0f", m.missed, truth) + format(" %5.0f", m.noise, truth) +
@@ -118,7 +119,7 @@ nlohmann::ordered_json to_json(const Row& row) {
             {"coherent", s.coherent()},
             {"off30", s.off30()},
             {"rms_m", s.rms()},
-            {"recall", number(m.recall(), truth)},
+            {"recall", number(m.recall(), truth && m.true_pieces > 0)},
             {"precision", number(m.precision(), truth && m.found > 0)},
             {"angle_median_deg", number(median(m.angle_deg), truth)},
             {"distance_median_m", number(median(m.distance_m), truth)},

@@ -185,6 +185,8 @@ Sequence open_noise(std::size_t frames) {
             state = state * 6364136223846793005u + 1442695040888963407u;
             raw = static_cast<std::uint16_t>(500 + (state >> 40) % 3500);
         }
+        frame.truth =
+            make_truth(Image<std::uint16_t>(frame.depth.width, frame.depth.height), {}, frame.depth, camera);
         return frame;
     };
     return {"noise", camera, evenly_spread(frames, frames), load};
