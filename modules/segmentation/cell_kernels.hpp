@@ -24,7 +24,8 @@ struct alignas(64) Cell {
     float cos_limit = 2;           ///< least cosine of the angle to a region's normal
     float a = 0, b = 0;            ///< slope of its plane
     float mse = 0;                 ///< mean squared residual of w
-    float xx = 0, xy = 0, yy = 0;  ///< covariance of its pixels
+    float xx = 0, yy = 0;          ///< variance of its pixels' x and y; their covariance is next to nothing
+    float pixels = 0;              ///< valid ones
     float sigma = 0;               ///< of depth at 1/w, metres
     float per_steepness = 0;       ///< 1 / steepness of its plane: its distance to the sensor, metres
 

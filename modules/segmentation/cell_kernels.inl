@@ -211,7 +211,7 @@ void fit_cells(const CellSums& s, const Centres& at, const CellRules& rules, Cel
     const Float8 cos_sum = (splat(cosine) - error * sine) / square_root(one + error * error);
     constexpr float kWidest = 0.17f;  // of about 80 degrees
     const Float8 cos_limit = select(cos_sum > splat(kWidest), cos_sum, splat(kWidest));
-    const float fxx = 1 / (fx * fx), fxy = 1 / (fx * fy), fyy = 1 / (fy * fy);
+    const float fxx = 1 / (fx * fx), fyy = 1 / (fy * fy);
     Float8 low[8] = {x,
                      y,
                      w,
@@ -220,7 +220,7 @@ void fit_cells(const CellSums& s, const Centres& at, const CellRules& rules, Cel
                      b * per_steepness,
                      c * per_steepness,
                      cos_limit};
-    Float8 high[8] = {a, b, mse, uu * fxx, uv * fxy, vv * fyy, sigma, per_steepness};
+    Float8 high[8] = {a, b, mse, uu * fxx, vv * fyy, s.n.one, sigma, per_steepness};
     transpose(low);
     transpose(high);
     for (int i = 0; i < 8; ++i) {

@@ -33,8 +33,7 @@ class CellSegmenter : public Segmenter {
         min_pixels_ = std::max(3.0, options_.min_region_fraction * depth.width * depth.height);
         grid_.reset(depth, rules_for(camera));
         grid_.fit();
-        grower_.grow({grid_.columns(), grid_.rows(), kCellPx / camera.depth.fx, camera.noise, grid_.cells(),
-                      grid_.sums()},
+        grower_.grow({grid_.columns(), grid_.rows(), kCellPx / camera.depth.fx, camera.noise, grid_.cells()},
                      min_pixels_);
         label_pixels({options_.thickness_m, options_.thickness_sigmas, camera.noise});
         sum_regions(camera);

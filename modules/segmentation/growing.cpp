@@ -21,10 +21,27 @@ std::array<int, 4> neighbour_steps(const CellMap& map) {
     return {1, map.columns, -1, -map.columns};
 }
 
-/// What makes a cell's sums a part of a region's: its inverse depths weighted by 1 / variance.
-double weight(const Cell& cell) {
-    const double k = 1 / (static_cast<double>(cell.w) * static_cast<double>(cell.sigma));
-    return k * k;
+/// The sums of a cell's points as its fit tells them, weighted by 1 / variance of inverse depth, times
+/// `sign`. A cell is one cache line, its own sums would be two more.
+PointSums weighted_sums(const Cell& cell, double sign = 1) {
+    const double x = static_cast<double>(cell.x), y = static_cast<double>(cell.y),
+                 w = static_cast<double>(cell.w);
+    const double a = static_cast<double>(cell.a), b = static_cast<double>(cell.b);
+    const double xx = static_cast<double>(cell.xx), yy = static_cast<double>(cell.yy);
+    const double sigma_w = static_cast<double>(cell.sigma) * w * w;
+    const double k = sign * static_cast<double>(cell.pixels) / (sigma_w * sigma_w);
+    PointSums sums;
+    sums.zz = k;
+    sums.xz = k * x;
+    sums.yz = k * y;
+    sums.xx = k * (xx + x * x);
+    sums.xy = k * x * y;
+    sums.yy = k * (yy + y * y);
+    sums.z = k * w;
+    sums.x = k * (a * xx + x * w);
+    sums.y = k * (b * yy + y * w);
+    sums.n = k * (static_cast<double>(cell.mse) + a * a * xx + b * b * yy + w * w);
+    return sums;
 }
 
 float cosine(const Cell& a, const Cell& b) {
@@ -108,11 +125,11 @@ void RegionGrower::rank_seeds(const CellMap& map) {
 InverseDepthFit RegionGrower::fit_around(const CellMap& map, int cell) const {
     const std::array<int, 4> steps = neighbour_steps(map);
     PointSums sums;
-    sums.add(weight(map.cells[cell]), map.sums[cell]);
+    sums += weighted_sums(map.cells[cell]);
     for (int k = 0; k < 4; ++k) {
         if ((links_[cell] >> k & 1) == 0) continue;
         const int j = cell + steps[k];
-        sums.add(weight(map.cells[j]), map.sums[j]);
+        sums += weighted_sums(map.cells[j]);
     }
     return sums.fit();
 }
@@ -129,8 +146,8 @@ void RegionGrower::grow_from(const CellMap& map, int seed, double min_pixels) {
 
     const auto add = [&](int i) {
         label_of_cell_[i] = label;
-        region.sums.add(weight(map.cells[i]), map.sums[i]);
-        region.pixels += map.sums[i].n;
+        region.sums += weighted_sums(map.cells[i]);
+        region.pixels += static_cast<double>(map.cells[i].pixels);
         ++region.cells;
         queue_.push_back(i);
     };
@@ -195,8 +212,8 @@ void RegionGrower::settle_borders(const CellMap& map) {
 
 void RegionGrower::move(const CellMap& map, int cell, std::uint16_t label, int sign) {
     MergeRegion& region = regions_[label - 1];
-    region.sums.add(sign * weight(map.cells[cell]), map.sums[cell]);
-    region.pixels += sign * map.sums[cell].n;
+    region.sums += weighted_sums(map.cells[cell], sign);
+    region.pixels += sign * static_cast<double>(map.cells[cell].pixels);
     region.cells += sign;
 }
 
@@ -269,7 +286,7 @@ RegionGrower::Bend RegionGrower::bend_of(const CellMap& map, std::uint16_t label
             Eigen::Vector3f(cell.x, cell.y, 1).cast<double>() / static_cast<double>(cell.w);
         const Eigen::Vector3d q = (axes.transpose() * (p - centre)) / z;
         const double e = plane.signed_distance(p);
-        const double weight = map.sums[members_[member]].n / static_cast<double>(cell.sigma * cell.sigma);
+        const double weight = static_cast<double>(cell.pixels / (cell.sigma * cell.sigma));
         const Vector6d terms{1, q.x(), q.y(), q.x() * q.x(), q.x() * q.y(), q.y() * q.y()};
         normal_matrix += weight * terms * terms.transpose();
         right += weight * e * terms;

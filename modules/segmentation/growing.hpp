@@ -21,7 +21,6 @@ struct CellMap {
     double cell_x = 0;  ///< width of a cell in normalised coordinates
     DepthNoise noise;   ///< of the sensor
     std::span<const Cell> cells;
-    std::span<const PointSums> sums;  ///< of each cell's pixels
 };
 
 /// A region's plane as cells are held against it.
@@ -46,7 +45,7 @@ struct Target {
     /// Mean squared residual of w of the cell's pixels.
     float mse_to(const Cell& cell) const {
         const float offset = cell.w - (a * cell.x + b * cell.y + c), da = cell.a - a, db = cell.b - b;
-        return cell.mse + offset * offset + da * da * cell.xx + 2 * da * db * cell.xy + db * db * cell.yy;
+        return cell.mse + offset * offset + da * da * cell.xx + db * db * cell.yy;
     }
 };
 
