@@ -49,8 +49,7 @@ class Fingerprint {
     std::uint64_t value_ = 0xcbf29ce484222325u;
 };
 
-/// What tells this simulation from others: its name, poses and three frames. Where nothing is seen, pixels
-/// are bytes without padding.
+/// What tells this simulation from others: its parameters, poses and three frames.
 std::string fingerprint_of(const std::string& name, const sim::SimulatedSource& source) {
     static_assert(sizeof(Rgb) == 3);
     Fingerprint fingerprint;
@@ -83,7 +82,7 @@ std::filesystem::path render(const SequenceInfo& info, const std::string& simula
                              const std::function<void(std::int64_t)>& on_frame) {
     auto source = std::make_unique<sim::SimulatedSource>(sim::parse_simulator_name(simulator));
     const std::string prefix = info.name.substr(info.name.find(':') + 1) + "~";
-    const std::string stem = prefix + fingerprint_of(simulator, *source);
+    const std::string stem = prefix + fingerprint_of(info.simulator, *source);
     std::filesystem::create_directories(options.cache);
     const auto size = static_cast<std::int64_t>(*source->size());
     const std::filesystem::path whole = options.cache / (stem + ".lcmlog");
