@@ -11,13 +11,13 @@ namespace {
 constexpr std::int64_t kMaxGap_us = 1000000;
 }  // namespace
 
-std::optional<Pose> true_pose_at(const Trajectory& truth, std::int64_t utime, std::int64_t max_gap_us) {
+std::optional<Pose> pose_between(const Trajectory& trajectory, std::int64_t utime, std::int64_t max_gap_us) {
     const auto next =
-        std::lower_bound(truth.begin(), truth.end(), utime,
+        std::lower_bound(trajectory.begin(), trajectory.end(), utime,
                          [](const StampedPose& pose, std::int64_t t) { return pose.utime < t; });
-    if (next == truth.end()) return std::nullopt;
+    if (next == trajectory.end()) return std::nullopt;
     if (next->utime == utime) return next->world_from_camera;
-    if (next == truth.begin()) return std::nullopt;
+    if (next == trajectory.begin()) return std::nullopt;
     const StampedPose& before = *(next - 1);
     if (next->utime - before.utime > max_gap_us) return std::nullopt;
     const double fraction =
@@ -29,8 +29,8 @@ ClosureCount count_closures(const Trajectory& truth, const std::vector<Closure>&
                             const ClosureTolerance& tolerance) {
     ClosureCount count;
     for (const Closure& closure : closures) {
-        const auto from = true_pose_at(truth, closure.from_utime, kMaxGap_us);
-        const auto to = true_pose_at(truth, closure.to_utime, kMaxGap_us);
+        const auto from = pose_between(truth, closure.from_utime, kMaxGap_us);
+        const auto to = pose_between(truth, closure.to_utime, kMaxGap_us);
         if (!from || !to) {
             ++count.unjudged;
             continue;

@@ -29,9 +29,9 @@ struct ClosureCount {
     friend bool operator==(const ClosureCount&, const ClosureCount&) = default;
 };
 
-/// The true pose at a moment, interpolated between neighbours that are at most max_gap_us apart; nothing in a
-/// wider gap or outside. The truth is sorted by time.
-std::optional<Pose> true_pose_at(const Trajectory& truth, std::int64_t utime, std::int64_t max_gap_us);
+/// The pose of a trajectory at a moment, interpolated between neighbours that are at most max_gap_us apart;
+/// nothing in a wider gap or outside. The trajectory is sorted by time.
+std::optional<Pose> pose_between(const Trajectory& trajectory, std::int64_t utime, std::int64_t max_gap_us);
 
 /// Counts closures whose relative pose is true and false, see ClosureTolerance.
 ClosureCount count_closures(const Trajectory& truth, const std::vector<Closure>& closures,

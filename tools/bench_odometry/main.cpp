@@ -6,6 +6,8 @@
 #include <opencv2/core/version.hpp>
 
 #include "bench_odometry/benchmark.hpp"
+#include "bench_odometry/plots.hpp"
+#include "bench_odometry/table2.hpp"
 #include "build_info/build_info.hpp"
 #include "core/files.hpp"
 #include "messages/process.hpp"
@@ -18,7 +20,8 @@ constexpr const char* kProgram = "planemap-bench-odometry";
 struct Arguments {
     std::string sequences, methods;
     BenchmarkOptions benchmark;
-    std::filesystem::path json;
+    std::filesystem::path json, plots;
+    bool table2 = false;
 };
 
 /// Folder of the sample data, as the tests find it.
@@ -61,6 +64,8 @@ std::string description() {
            "  planemap-bench-odometry --sequences redkitchen,sim:kt0 --methods default,default-no-graph\n"
            "  planemap-bench-odometry --sequences fr1_rpy_start --methods default "
            "--odometry-max-points 200\n"
+           "  planemap-bench-odometry --sequences redkitchen --plots out/plots\n"
+           "  planemap-bench-odometry --table2                      the paper's Table 2\n"
            "Sequences:\n" +
            described(known_sequences()) + "Methods:\n" + described(known_methods()) +
            "Columns:\n"
@@ -78,6 +83,12 @@ std::string description() {
            "  kf, true false keyframes; loop closures that are true and false: a false one's relative pose "
            "is\n"
            "                 more than 10 cm + 2 % of the true distance, or 5 deg, from the true one\n"
+           "Table 2 takes the first visit of a place as the truth: a later visit's reference is the first "
+           "one's\n"
+           "estimate times the true motion in between. ATE over all later visits after alignment, RPE from "
+           "one "
+           "to\n"
+           "the next; mean and deviation of the runs' RMSE.\n"
            "Simulated sequences are rendered once and kept in the cache (--cache); they take up to 300 kB a "
            "frame.";
 }
@@ -93,15 +104,27 @@ void add_flags(Flags& flags, Arguments& arguments) {
     flags.add("cache", options.cache, "folder of rendered sequences; safe to remove");
     flags.add("json", arguments.json,
               "write the rows to this file, or to - (standard output; tables then go to stderr)");
+    flags.add("plots", arguments.plots, "draw trajectories over the truth from above: FOLDER/SEQUENCE.svg");
+    flags.add(
+        "table2", arguments.table2,
+        "the paper's Table 2 instead: five places of an office visited again and again, and redkitchen");
     flags.add("q,quiet", options.quiet, "no progress on stderr");
     planemap::add_flags(flags, options.pipeline.segmentation, "segmentation-");
     planemap::add_flags(flags, options.pipeline.odometry, "odometry-");
     planemap::add_flags(flags, options.pipeline.graph, "graph-");
 }
 
+/// FOLDER/kt0.svg from sim:kt0.
+void write_plot(const std::filesystem::path& folder, const Sequence& sequence, const std::vector<Row>& rows) {
+    std::filesystem::create_directories(folder);
+    const std::string name = sequence.name.substr(sequence.name.find(':') + 1);
+    write_file(folder / (name + ".svg"), plot_svg(sequence.name, *sequence.truth, rows));
+}
+
 /// Runs every method on one sequence; prints and keeps each row as it comes.
 void run_sequence(const Benchmark& benchmark, const SequenceInfo& info,
-                  const std::vector<MethodInfo>& methods, std::FILE* out, nlohmann::ordered_json& json) {
+                  const std::vector<MethodInfo>& methods, const std::filesystem::path& plots, std::FILE* out,
+                  nlohmann::ordered_json& json) {
     std::string missing;
     const std::optional<Sequence> sequence = benchmark.open(info, missing);
     if (!sequence) {
@@ -109,29 +132,45 @@ void run_sequence(const Benchmark& benchmark, const SequenceInfo& info,
         return;
     }
     std::fprintf(out, "\n%s: %s\n%s", info.name.c_str(), info.what.c_str(), table_heading().c_str());
+    std::vector<Row> rows;
     for (const MethodInfo& method : methods) {
         std::fflush(out);
-        const Row row = benchmark.run(*sequence, method);
-        std::fputs(table_line(row).c_str(), out);
-        json.push_back(to_json(row));
+        rows.push_back(benchmark.run(*sequence, method));
+        std::fputs(table_line(rows.back()).c_str(), out);
+        json.push_back(to_json(rows.back()));
     }
     std::fflush(out);
+    if (!plots.empty() && sequence->truth) write_plot(plots, *sequence, rows);
+}
+
+/// Without --methods, Table 2 leaves out what is slow.
+std::vector<MethodInfo> methods_of(const Arguments& arguments) {
+    std::vector<MethodInfo> methods = parse_methods(arguments.methods);
+    if (arguments.table2 && arguments.methods == names_of(known_methods()))
+        std::erase_if(methods, [](const MethodInfo& method) { return method.slow; });
+    return methods;
 }
 
 int run(const Arguments& arguments) {
     const bool json_to_stdout = arguments.json == "-",
                json_to_file = !arguments.json.empty() && !json_to_stdout;
-    const std::vector<SequenceInfo> sequences = parse_sequences(arguments.sequences);
-    const std::vector<MethodInfo> methods = parse_methods(arguments.methods);
+    std::vector<SequenceInfo> sequences = parse_sequences(arguments.sequences);
+    const std::vector<MethodInfo> methods = methods_of(arguments);
     const Benchmark benchmark(arguments.benchmark);
     std::FILE* out = json_to_stdout ? stderr : stdout;
     std::fputs(build_info("OpenCV " CV_VERSION " as Debian builds it").c_str(), out);
     nlohmann::ordered_json json = nlohmann::ordered_json::array();
+    if (json_to_file) write_file(arguments.json, "[]\n");  // an error now, not in an hour
+    if (arguments.table2) {
+        json = print_table2(benchmark, methods, out);
+        sequences.clear();
+    }
     for (const SequenceInfo& sequence : sequences) {
-        run_sequence(benchmark, sequence, methods, out, json);
+        run_sequence(benchmark, sequence, methods, arguments.plots, out, json);
         // After each sequence: what was measured is kept if a later one fails.
         if (json_to_file) write_file(arguments.json, json.dump(1) + "\n");
     }
+    if (json_to_file) write_file(arguments.json, json.dump(1) + "\n");
     if (json_to_stdout) std::fputs((json.dump(1) + "\n").c_str(), stdout);
     return 0;
 }

@@ -138,7 +138,7 @@ const std::vector<SequenceInfo>& known_sequences() {
         {"sim:kt2", "the same, 8.4 m", kHandHeld, "handheld_poses/kt2.txt"},
         {"sim:kt3", "the same, 11.3 m", kHandHeld, "handheld_poses/kt3.txt"},
         {"sim:building", "simulated corridor around a block, 1.1 rounds of 100 m at walking speed",
-         "building?blur=4&jitter=0.009&speed=1.2&turn=60&frames=3300", ""},
+         "building?blur=4&jitter=0.009&speed=1.2&turn=60&frames=2850", ""},
         {"sim:spin", "simulated office, fast rotations with blur",
          "office?blur=8&jitter=0.009&speed=1&turn=180&frames=600", ""},
         {"sim:wall", "simulated: along a wall, 6 m of it bare", "wall?blur=4&jitter=0.009&frames=1300", ""},
@@ -147,7 +147,7 @@ const std::vector<SequenceInfo>& known_sequences() {
         {"sim:dark", "simulated office without light: depth alone", "office?light=0&jitter=0.009&frames=870",
          ""},
         {"sim:twins", "simulated: two rooms that nothing tells apart, and a corridor",
-         "twins?blur=4&jitter=0.009&speed=0.8&turn=70&frames=2400", ""},
+         "twins?blur=4&jitter=0.009&speed=0.8&turn=70&frames=2100", ""},
     };
     return kSequences;
 }

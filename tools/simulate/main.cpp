@@ -43,12 +43,12 @@ int main(int argc, char** argv) {
                           "The simulator to an LCM log (OPENNI_FRAME with JPEG and zipped depth, "
                           "PLANEMAP_CAMERA_INFO), with the exact poses\n"
                           "(groundtruth.txt, TUM format) and planes (planes_truth.json) beside it.\n"
-                          "Example: planemap-simulate --output office/office.lcmlog");
+                          "Example: planemap-simulate --output office/office.lcmlog\n" +
+                              planemap::sim::simulator_help());
     std::string world = "sim:office";
     std::filesystem::path output;
     planemap::SensorShellOptions options;
-    flags.add_positional("world", world,
-                         "Simulator name, e.g. sim:office?frames=300&seed=7; default: sim:office", false);
+    flags.add_positional("world", world, "Simulator name, see above; default: sim:office", false);
     flags.add("o,output", output, "The log to write");
     flags.required();
     add_encoding_flags(flags, options);

@@ -85,7 +85,7 @@ World make_wall(std::uint64_t seed, double texel_scale) {
 }
 
 World make_clutter(std::uint64_t seed, double texel_scale) {
-    constexpr std::uint64_t kPieces = 2600;
+    constexpr std::uint64_t kPieces = 4500;
     constexpr double kNearest = 1.4, kFarthest = 3.2;  // from the middle
     constexpr Look kLooks[] = {kPoster, kBooks, kOak, {Pattern::kCarpet, {0.4f, 0.5f, 0.3f}},
                                kBeech,  kScreen};
