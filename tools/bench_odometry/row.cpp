@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench_odometry/row.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -17,7 +18,7 @@ struct Figures {
     double path_m = kUnknown, ate_m = kUnknown, scale = kUnknown;
     double frame_m = kUnknown, frame_deg = kUnknown, second_m = kUnknown, second_deg = kUnknown;
     double tracking_ms = kUnknown, tracking_p95_ms = kUnknown, segmentation_ms = kUnknown;
-    double loops_true = kUnknown, loops_false = kUnknown, loops_unjudged = kUnknown;
+    double loops_true = kUnknown, loops_false = kUnknown;
 };
 
 Figures figures_of(const Row& row) {
@@ -25,8 +26,9 @@ Figures figures_of(const Row& row) {
     if (row.evaluation) {
         const Evaluation& e = *row.evaluation;
         f.path_m = e.path_length_m;
-        f.loops_true = row.loops.right;
-        f.loops_false = row.loops.wrong;
+        f.loops_true = f.loops_false = 0;
+        for (const auto& loop : row.loops)
+            if (loop) ++(loop->is_false ? f.loops_false : f.loops_true);
         if (e.ate) {
             f.ate_m = e.ate->metres.rmse;
             f.scale = e.ate->scale;
@@ -40,7 +42,6 @@ Figures figures_of(const Row& row) {
             f.second_deg = e.rpe_1s->degrees.rmse;
         }
     }
-    f.loops_unjudged = row.loops.unjudged;
     if (row.run.tracking.count > 0) {
         f.tracking_ms = row.run.tracking.median_ms;
         f.tracking_p95_ms = row.run.tracking.p95_ms;
@@ -68,16 +69,30 @@ nlohmann::ordered_json count(double value) {
     return std::lround(value);
 }
 
+/// Where to look: moments and errors of the false closures.
+nlohmann::ordered_json false_loops(const Row& row) {
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    for (std::size_t i = 0; i < row.loops.size(); ++i) {
+        if (!row.loops[i] || !row.loops[i]->is_false) continue;
+        list.push_back({{"from_utime", row.run.closures[i].from_utime},
+                        {"to_utime", row.run.closures[i].to_utime},
+                        {"error_m", row.loops[i]->metres},
+                        {"error_deg", row.loops[i]->degrees}});
+    }
+    return list;
+}
+
 }  // namespace
 
 Row make_row(const std::string& sequence, const std::string& method, const std::optional<Trajectory>& truth,
-             Run run) {
+             MethodRun run) {
     Row row;
     row.sequence = sequence;
     row.method = method;
     row.run = std::move(run);
     if (truth) row.evaluation = evaluate(*truth, row.run.trajectory, {});
-    row.loops = count_closures(truth.value_or(Trajectory()), row.run.closures);
+    for (const Closure& closure : row.run.closures)
+        row.loops.push_back(judge(truth.value_or(Trajectory()), closure));
     return row;
 }
 
@@ -126,7 +141,9 @@ nlohmann::ordered_json to_json(const Row& row) {
             {"keyframes", row.run.keyframes},
             {"loops_true", count(f.loops_true)},
             {"loops_false", count(f.loops_false)},
-            {"loops_unjudged", count(f.loops_unjudged)}};
+            {"loops_unjudged",
+             std::count_if(row.loops.begin(), row.loops.end(), [](const auto& l) { return !l; })},
+            {"false_loops", false_loops(row)}};
 }
 
 }  // namespace planemap::bench_odometry
