@@ -34,7 +34,7 @@ TEST(RevisitErrors, NoneForAPerfectEstimateInAnotherFrame) {
     twist << 1, 2, 3, 0.1, -0.5, 0.9;
     const auto errors = revisit_errors(truth, moved(truth, pose_from_twist(twist)), find_places(truth));
     ASSERT_TRUE(errors);
-    EXPECT_EQ(errors->revisits, 10);
+    EXPECT_GE(errors->revisits, 10);
     EXPECT_EQ(errors->lost, 0);
     EXPECT_LT(errors->metres.max, 1e-9);
     EXPECT_LT(errors->step_metres.max, 1e-9);
@@ -61,8 +61,9 @@ TEST(RevisitErrors, VisitsWithoutAPoseAreCounted) {
     const Trajectory two_rounds(truth.begin(), truth.begin() + 600);
     const auto errors = revisit_errors(truth, two_rounds, places);
     ASSERT_TRUE(errors);
-    EXPECT_EQ(errors->revisits, 5);
-    EXPECT_EQ(errors->lost, 5);
+    EXPECT_GE(errors->revisits, 5);
+    EXPECT_GE(errors->lost, 5);
+    EXPECT_EQ(errors->revisits + errors->lost, revisit_errors(truth, truth, places)->revisits);
     EXPECT_FALSE(revisit_errors(truth, Trajectory(truth.begin(), truth.begin() + 300), places));
     EXPECT_FALSE(revisit_errors(truth, {}, places));
     EXPECT_FALSE(revisit_errors(truth, truth, {}));

@@ -50,12 +50,15 @@ Figures figures_of(const Row& row) {
     return f;
 }
 
-std::string format(const char* pattern, double value) {
+/// A number right-aligned in `width` characters; "-" if it is not known.
+std::string cell(double value, int width, int decimals) {
     char text[32];
-    const bool known = std::isfinite(value);
-    std::snprintf(text, sizeof(text), pattern, known ? value : 0.0);
-    if (known) return text;
-    return std::string(std::string(text).size() - 1, ' ') + "-";
+    if (std::isfinite(value)) {
+        std::snprintf(text, sizeof(text), "%*.*f", width, decimals, value);
+    } else {
+        std::snprintf(text, sizeof(text), "%*s", width, "-");
+    }
+    return text;
 }
 
 /// JSON has no NaN.
@@ -97,8 +100,9 @@ Row make_row(const std::string& sequence, const std::string& method, const std::
 }
 
 std::string table_heading() {
-    return "method            frames lost |  ATE m | frame mm    deg |  1 s mm    deg | scale % | "
-           "    ms    p95   seg ms  graph s | CPU s RSS MB |  kf true false\n";
+    return "method            frames lost |   ATE m | frame mm    deg |   1 s mm    deg | scale % |     ms   "
+           " p95 "
+           "  seg ms  graph s |   CPU s  RSS MB |   kf true false\n";
 }
 
 std::string table_line(const Row& row) {
@@ -106,14 +110,12 @@ std::string table_line(const Row& row) {
     char start[64];
     std::snprintf(start, sizeof(start), "%-17s %6lld %4lld", row.method.c_str(),
                   static_cast<long long>(row.run.frames), static_cast<long long>(row.lost()));
-    return start + format(" | %6.4f", f.ate_m) + format(" | %8.2f", 1e3 * f.frame_m) +
-           format(" %6.3f", f.frame_deg) + format(" | %7.1f", 1e3 * f.second_m) +
-           format(" %6.3f", f.second_deg) + format(" | %7.2f", 100 * (f.scale - 1)) +
-           format(" | %6.2f", f.tracking_ms) + format(" %6.2f", f.tracking_p95_ms) +
-           format(" %8.2f", f.segmentation_ms) + format(" %8.2f", row.run.graph.total_s) +
-           format(" | %5.1f", row.cpu_s) + format(" %6.0f", row.peak_rss_mb) +
-           format(" | %3.0f", row.run.keyframes) + format(" %4.0f", f.loops_true) +
-           format(" %5.0f\n", f.loops_false);
+    return start + (" | " + cell(f.ate_m, 7, 4)) + " | " + cell(1e3 * f.frame_m, 8, 2) +
+           cell(f.frame_deg, 7, 3) + " | " + cell(1e3 * f.second_m, 8, 1) + cell(f.second_deg, 7, 3) + " | " +
+           cell(100 * (f.scale - 1), 7, 2) + " | " + cell(f.tracking_ms, 6, 2) +
+           cell(f.tracking_p95_ms, 7, 2) + cell(f.segmentation_ms, 9, 2) + cell(row.run.graph.total_s, 9, 2) +
+           " | " + cell(row.cpu_s, 7, 1) + cell(row.peak_rss_mb, 8, 0) + " | " +
+           cell(row.run.keyframes, 4, 0) + cell(f.loops_true, 5, 0) + cell(f.loops_false, 6, 0) + "\n";
 }
 
 nlohmann::ordered_json to_json(const Row& row) {
