@@ -46,6 +46,10 @@ TEST(Plot, ShowsTruthRowsLegendAndScale) {
     const std::string svg = plot_svg("sim:kt0", truth, {row, make_row("sim:kt0", "paper", truth, {})});
     EXPECT_THAT(svg, AllOf(HasSubstr("sim:kt0, from above"), HasSubstr("truth"), HasSubstr("default, 0.0 cm"),
                            HasSubstr("0.5 m"), Not(HasSubstr("paper")), Not(HasSubstr("nan"))));
+    Trajectory longer = truth;
+    longer.push_back({truth.back().utime + 1000000, Pose(Eigen::Translation3d(90, 0, 0))});
+    EXPECT_EQ(plot_svg("sim:kt0", longer, {row}), plot_svg("sim:kt0", truth, {row})) << "truth in time only";
+    EXPECT_THAT(plot_svg("empty", truth, {}), AllOf(Not(HasSubstr("nan")), Not(HasSubstr("inf"))));
     int moves = 0;
     for (const char c : svg) moves += c == 'M' ? 1 : 0;
     EXPECT_EQ(moves, 3) << "the truth, and two pieces";
