@@ -259,6 +259,19 @@ TEST_P(Kernels, RangeIsInclusive) {
     }
 }
 
+TEST(CellGridTest, DepthOfAnyPlaneIsAReading) {
+    const CameraInfo camera = scene::camera(64, 48);
+    const DepthImage depth(64, 48, 1000);
+    CellGrid grid(best_cell_kernels());
+    grid.reset(depth, rules_for(camera));
+    EXPECT_EQ(grid.depth_at({3, 2}, grid.candidate({0, 0, 1 / 1.5}, 1)), 1500);
+    // Behind the camera, beyond all readings, not a number: anything that a reading can be.
+    for (const double bad : {-1.0, 0.0, 1e-9, 1e9, 1e300, std::nan("")}) {
+        EXPECT_LE(grid.depth_at({3, 2}, grid.candidate({bad, 0, bad}, 1)), 65534) << bad;
+        EXPECT_LE(grid.depth_at({3, 2}, {bad, 0, 0, 1, 1}), 65534) << bad;
+    }
+}
+
 TEST(CellGridTest, NothingValidIsNothingPlanar) {
     const CameraInfo camera = scene::camera(40, 30);
     const DepthImage depth(40, 30, 65535);
