@@ -115,6 +115,7 @@ DepthRange::DepthRange(const CameraInfo& camera) {
 void ShapeTracer::recycle(std::vector<PlanarRegion>& regions) {
     for (PlanarRegion& region : regions) {
         std::vector<Ring>& rings = region.outline.rings;
+        if (rings.capacity() == 0) continue;
         for (Ring& ring : rings) spare_rings_.push_back(std::move(ring));
         rings.clear();
         spare_lists_.push_back(std::move(rings));
