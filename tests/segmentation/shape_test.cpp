@@ -119,6 +119,19 @@ TEST(ShapeTest, ScatteredPixelsDoNotMakeAnInvalidRegion) {
     EXPECT_TRUE(few.regions[0].outline.empty());
 }
 
+TEST(ShapeTest, CornersBeyondTheHorizonAreNoFartherThanReadings) {
+    CameraInfo camera = scene::camera(64, 48);
+    camera.depth_max_m = 1e308;
+    std::vector<PlanarRegion> regions(1);
+    regions[0].plane = {{0, -1, 0}, 1};  // a floor, which the upper half of the image does not see
+    for (const double x : {-1, 0, 1}) {
+        for (const double z : {2, 3}) regions[0].moments.add({x, 1, z});
+    }
+    ShapeTracer().trace_all(Image<std::uint16_t>(64, 48, 1), camera, regions);
+    EXPECT_TRUE(is_valid(regions[0]));
+    EXPECT_LT(regions[0].box.half_extents.maxCoeff(), 2 * 65.5);
+}
+
 TEST(DepthRangeTest, KeepsWithin16BitsAndOffInvalidValues) {
     CameraInfo camera = scene::camera(8, 8);
     camera.depth_min_m = 0;
