@@ -351,8 +351,7 @@ void RegionGrower::find_smooth_borders(const CellMap& map) {
                 const Cell& other = map.cells[j];
                 if (other.sigma * other.w > surest) continue;
                 const Target& target = targets_[label - 1];
-                const float to_region = target.nx * other.nx + target.ny * other.ny + target.nz * other.nz;
-                if (to_region < turned && cosine(map.cells[i], other) > similar) ++border.smooth;
+                if (target.cosine(other) < turned && cosine(map.cells[i], other) > similar) ++border.smooth;
             }
         }
     }
