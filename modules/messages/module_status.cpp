@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
+#include <ctime>
 
 #include "messages/channels.hpp"
 
@@ -11,6 +12,12 @@ namespace planemap {
 
 namespace {
 constexpr std::int64_t kPeriodUs = 1000000;
+}
+
+double thread_cpu_ms() {
+    timespec time = {};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+    return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
 }
 
 ModuleStatus::ModuleStatus(std::string module)
@@ -42,6 +49,7 @@ ModuleStatus::Work::~Work() {
     const double ms =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
     status_.work_ms_.add(ms);
+    status_.work_cpu_ms_.add(thread_cpu_ms() - cpu_start_ms_);
     status_.window_ms_.add(ms);
 }
 

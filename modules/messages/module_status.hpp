@@ -12,6 +12,9 @@
 
 namespace planemap {
 
+/// CPU time of the calling thread since it began, milliseconds.
+double thread_cpu_ms();
+
 /// Counts what a module does and tells it once a second on PLANEMAP_STATUS_<MODULE>.
 class ModuleStatus {
   public:
@@ -41,6 +44,7 @@ class ModuleStatus {
       private:
         ModuleStatus& status_;
         std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+        double cpu_start_ms_ = thread_cpu_ms();
     };
 
     const std::string& module() const { return module_; }
@@ -49,6 +53,8 @@ class ModuleStatus {
     std::int64_t decode_error_count() const { return decode_errors_; }
     /// Milliseconds of work for each input since the start.
     const Histogram& work_ms() const { return work_ms_; }
+    /// The same in CPU time of the thread that worked: what a busy machine does not lengthen.
+    const Histogram& work_cpu_ms() const { return work_cpu_ms_; }
 
     /// Publishes when a second has passed since the last time; `stopped` publishes at once, as the last
     /// message. Returns true if it did.
@@ -62,7 +68,7 @@ class ModuleStatus {
     std::string module_, channel_, text_;
     std::int64_t received_ = 0, published_ = 0, dropped_ = 0, decode_errors_ = 0, gaps_ = 0;
     std::optional<std::uint32_t> last_seq_;
-    Histogram work_ms_, window_ms_;
+    Histogram work_ms_, work_cpu_ms_, window_ms_;
     std::int64_t window_start_us_ = 0, window_received_ = 0, window_published_ = 0;
     module_status_t last_;
     std::int32_t seq_ = 0;

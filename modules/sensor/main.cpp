@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sensor/sensor_shell.hpp"
+#include "sensor/simulator/simulated_source.hpp"
 
 int main(int argc, char** argv) {
-    planemap::Process process("sensor",
-                              "Publishes RGB-D frames: a TUM-layout folder or the simulator (sim:office).");
+    planemap::Process process("sensor", "Publishes RGB-D frames: a TUM-layout folder or the simulator.\n" +
+                                            planemap::sim::simulator_help());
     std::string input;
     planemap::SensorShellOptions options;
     planemap::SourceOptions source;
-    process.flags().add_positional("input", input, "TUM-layout folder, or sim:office[?frames=N&seed=N...]");
+    process.flags().add_positional("input", input,
+                                   "TUM-layout folder, or sim:WORLD[?KEY=VALUE&...], see above");
     add_pacing_flags(process.flags(), options);
     add_encoding_flags(process.flags(), options);
     return process.run(argc, argv, [&](planemap::Bus& bus) {

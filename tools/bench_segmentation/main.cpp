@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // planemap-bench-segmentation: methods that find planes in depth images, on the same frames.
+#include <pcl/pcl_config.h>
+
 #include <cstdio>
 #include <cstdlib>
+#include <opencv2/core/version.hpp>
 
 #include "bench_segmentation/benchmark.hpp"
-#include "bench_segmentation/build_info.hpp"
 #include "bench_segmentation/table1.hpp"
+#include "build_info/build_info.hpp"
 #include "core/files.hpp"
 #include "messages/process.hpp"
 
@@ -130,7 +133,10 @@ int run(const Arguments& arguments) {
                json_to_file = !arguments.json.empty() && !json_to_stdout;
     if (json_to_file) write_file(arguments.json, "[]\n");  // an error now, not in two minutes
     std::FILE* out = json_to_stdout ? stderr : stdout;
-    std::fputs(build_info().c_str(), out);
+    const std::string peers = "PCL " PCL_VERSION_PRETTY
+                              " compiled with these flags (PCL_NO_PRECOMPILE); ransac-debian: Debian's build "
+                              "of it; OpenCV " CV_VERSION " as Debian builds it";
+    std::fputs(build_info(peers).c_str(), out);
     const bool all_methods = arguments.methods == names_of(known_methods());
     const nlohmann::ordered_json json =
         arguments.table1 ? print_table1(table1_methods(arguments.methods, all_methods), out)

@@ -13,9 +13,9 @@ Pipeline::Pipeline(Bus& bus, const PipelineOptions& options)
     : bus_(bus),
       decoder_(std::make_shared<FrameDecoder>(bus, options.camera)),
       segmentation_(bus, decoder_, options.segmentation),
-      odometry_(bus, decoder_, options.odometry),
-      graph_(bus, options.graph),
-      map_(bus, options.map) {
+      odometry_(bus, decoder_, options.odometry) {
+    if (options.with_graph) graph_ = std::make_unique<GraphShell>(bus, options.graph);
+    if (options.with_graph && options.with_map) map_ = std::make_unique<MapShell>(bus, options.map);
     if (options.with_octomap) octomap_ = std::make_unique<OctomapShell>(bus, decoder_, options.octomap);
     bus_.subscribe(channels::kOdometry, [this](const RawMessage& message) {
         estimates_.push_back(from_message(decode<odometry_t>(message.bytes)));
@@ -26,15 +26,15 @@ void Pipeline::finish() {
     settle();
     odometry_.finish();
     settle();
-    graph_.finish();
+    if (graph_) graph_->finish();
     settle();
-    map_.finish();
+    if (map_) map_->finish();
     if (octomap_) octomap_->finish();
     decoder_->clear();
 }
 
 Trajectory Pipeline::trajectory() const {
-    const KeyframeTrajectory& keyframes = graph_.graph().trajectory();
+    const KeyframeTrajectory keyframes = graph_ ? graph_->graph().trajectory() : KeyframeTrajectory();
     Trajectory trajectory;
     for (const OdometryEstimate& estimate : estimates_) {
         if (estimate.status == TrackingStatus::kLost) continue;

@@ -23,6 +23,8 @@ struct PipelineOptions {
     GraphOptions graph;
     MapShellOptions map;
     OctomapOptions octomap;
+    bool with_graph = true;  ///< without it there is no map either
+    bool with_map = true;
     bool with_octomap = true;
     std::optional<CameraInfo> camera;  ///< instead of what the bus says
 };
@@ -42,14 +44,15 @@ class Pipeline {
     const OdometryEstimate* latest() const { return estimates_.empty() ? nullptr : &estimates_.back(); }
     /// One for each frame that reached the odometry, in order.
     const std::vector<OdometryEstimate>& estimates() const { return estimates_; }
-    /// World poses of all tracked frames after graph optimisation, at the moments that they are of.
+    /// World poses of all tracked frames after graph optimisation, at the moments that they are of; without
+    /// a graph their poses in the odom frame.
     Trajectory trajectory() const;
 
     FrameDecoder& decoder() { return *decoder_; }
     SegmentationShell& segmentation() { return segmentation_; }
     OdometryShell& odometry() { return odometry_; }
-    GraphShell& graph() { return graph_; }
-    MapShell& map() { return map_; }
+    GraphShell& graph() { return *graph_; }  ///< precondition: with_graph
+    MapShell& map() { return *map_; }        ///< precondition: with_graph and with_map
     OctomapShell* octomap() { return octomap_.get(); }
 
   private:
@@ -57,8 +60,8 @@ class Pipeline {
     std::shared_ptr<FrameDecoder> decoder_;
     SegmentationShell segmentation_;
     OdometryShell odometry_;
-    GraphShell graph_;
-    MapShell map_;
+    std::unique_ptr<GraphShell> graph_;
+    std::unique_ptr<MapShell> map_;
     std::unique_ptr<OctomapShell> octomap_;
     std::vector<OdometryEstimate> estimates_;
 };

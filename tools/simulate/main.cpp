@@ -3,11 +3,10 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "messages/channels.hpp"
-#include "messages/log.hpp"
 #include "messages/process.hpp"
 #include "sensor/sensor_shell.hpp"
 #include "sensor/simulator/simulated_source.hpp"
+#include "simulate/recording.hpp"
 
 namespace planemap {
 namespace {
@@ -21,27 +20,13 @@ int simulate(const std::string& world, const std::filesystem::path& output,
     std::filesystem::create_directories(folder);
     Bus bus("memq://");
     SensorShell sensor(bus, std::move(source), options);
-    // Beside and renamed: a log that bears its final name is whole.
-    const std::filesystem::path beside = output.string() + ".part";
-    LogWriter log(beside);
-    std::int64_t events = 0, bytes = 0, utime = 0;
-    bus.subscribe(".*", [&](const RawMessage& message) {
-        LogEvent event{
-            events++, utime, std::string(message.channel), {message.bytes.begin(), message.bytes.end()}};
-        bytes += static_cast<std::int64_t>(event.bytes.size());
-        log.write(event);
-    });
-    const auto total = sensor.source().size();
-    while (!stop_requested() && sensor.poll() >= 0) {
-        utime = sensor.last_utime();
-        bus.drain();
-        if (sensor.frames() % 100 == 0) {
-            std::fprintf(stderr, "planemap-simulate: frame %lld of %zu\n",
-                         static_cast<long long>(sensor.frames()), total.value_or(0));
+    const std::size_t total = sensor.source().size().value_or(0);
+    const std::int64_t bytes = record(sensor, bus, 0, output, [&](std::int64_t frames) {
+        if (frames % 100 == 0) {
+            std::fprintf(stderr, "planemap-simulate: frame %lld of %zu\n", static_cast<long long>(frames),
+                         total);
         }
-    }
-    log.close();
-    std::filesystem::rename(beside, output);
+    });
     write_trajectory(folder / "groundtruth.txt", simulated.ground_truth());
     sim::write_planes_truth(folder / "planes_truth.json", simulated.world());
     std::printf("%s: %lld frames, %.1f MB; exact poses in %s, planes in %s\n", output.c_str(),
@@ -58,12 +43,12 @@ int main(int argc, char** argv) {
                           "The simulator to an LCM log (OPENNI_FRAME with JPEG and zipped depth, "
                           "PLANEMAP_CAMERA_INFO), with the exact poses\n"
                           "(groundtruth.txt, TUM format) and planes (planes_truth.json) beside it.\n"
-                          "Example: planemap-simulate --output office/office.lcmlog");
+                          "Example: planemap-simulate --output office/office.lcmlog\n" +
+                              planemap::sim::simulator_help());
     std::string world = "sim:office";
     std::filesystem::path output;
     planemap::SensorShellOptions options;
-    flags.add_positional("world", world,
-                         "Simulator name, e.g. sim:office?frames=300&seed=7; default: sim:office", false);
+    flags.add_positional("world", world, "Simulator name, see above; default: sim:office", false);
     flags.add("o,output", output, "The log to write");
     flags.required();
     add_encoding_flags(flags, options);

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "sensor/simulator/office.hpp"
+
 #include <cmath>
 #include <numbers>
 
-#include "sensor/simulator/world.hpp"
+#include "sensor/simulator/looks.hpp"
 
 namespace planemap::sim {
 
@@ -10,24 +12,10 @@ using Eigen::Vector3d;
 
 namespace {
 
-const Vector3d kEast = Vector3d::UnitX(), kNorth = Vector3d::UnitY(), kUp = Vector3d::UnitZ();
-const Vector3d kWest = -kEast, kSouth = -kNorth, kDown = -kUp;
-
 constexpr double kRoomX = 6.0, kRoomY = 5.0, kRoomZ = 2.7;  // the room is [0, x] x [0, y] x [0, z]
 constexpr double kWallThickness = 0.12;
-constexpr double kDoorFrom = 3.1, kDoorTo = 4.0, kDoorZ = 2.05;  // in the south wall, along x
+constexpr double kDoorFrom = kOfficeDoorFrom, kDoorTo = kOfficeDoorTo, kDoorZ = kOfficeDoorZ;
 constexpr double kCorridorFrom = 1.2, kCorridorTo = 5.4, kCorridorDepth = 1.6, kCorridorZ = 2.5;
-
-constexpr Look kWhite{Pattern::kPaint, {0.86f, 0.85f, 0.81f}};
-constexpr Look kYellow{Pattern::kPaint, {0.84f, 0.78f, 0.62f}};
-constexpr Look kBlue{Pattern::kPaint, {0.58f, 0.67f, 0.76f}};
-constexpr Look kGrey{Pattern::kMetal, {0.66f, 0.67f, 0.68f}};
-constexpr Look kBeech{Pattern::kWood, {0.76f, 0.60f, 0.42f}};
-constexpr Look kOak{Pattern::kWood, {0.58f, 0.42f, 0.27f}};
-constexpr Look kPoster{Pattern::kPoster, {0.92f, 0.91f, 0.88f}};
-constexpr Look kScreen{Pattern::kScreen, {}};
-constexpr Look kBooks{Pattern::kBooks, {}};
-constexpr Look kPlastic{Pattern::kPaint, {0.20f, 0.20f, 0.22f}};
 
 /// The walls of the room, with a corner cut off by a wall at 56 deg to the north wall.
 void add_room(WorldBuilder& office) {
@@ -76,7 +64,22 @@ void add_window(WorldBuilder& office) {
                    {.back = true});
 }
 
-/// The corridor behind the door, the door's frame and the open leaf.
+/// The door's frame and the open leaf.
+void add_doorway(WorldBuilder& office) {
+    constexpr double kNear = -kWallThickness, kDoorWidth = kDoorTo - kDoorFrom;
+    office.add_panel("door jamb west", {kDoorFrom, kNear, kDoorZ}, kNorth, kDown, kWallThickness, kDoorZ,
+                     kOak);
+    office.add_panel("door jamb east", {kDoorTo, 0, kDoorZ}, kSouth, kDown, kWallThickness, kDoorZ, kOak);
+    office.add_panel("door lintel", {kDoorFrom, kNear, kDoorZ}, kEast, kNorth, kDoorWidth, kWallThickness,
+                     kOak);
+    const double opened = 110 * std::numbers::pi / 180;
+    const Vector3d along(std::cos(opened), std::sin(opened), 0);
+    office.add_box("door", {{kDoorFrom, 0.02, 0.01}, along}, {kDoorWidth, 0.04, kDoorZ - 0.02}, kBeech,
+                   kBeech, {});
+    office.add_picture(0.25, 0.45, 0.4, 0.3, kPoster);
+}
+
+/// The corridor behind the door.
 void add_corridor(WorldBuilder& office) {
     constexpr double kNear = -kWallThickness, kFar = kNear - kCorridorDepth;
     constexpr double kLength = kCorridorTo - kCorridorFrom, kDoorWidth = kDoorTo - kDoorFrom;
@@ -103,17 +106,6 @@ void add_corridor(WorldBuilder& office) {
     office.add_panel("corridor east wall", {kCorridorTo, kNear, kCorridorZ}, kSouth, kDown, kCorridorDepth,
                      kCorridorZ, kWhite);
     office.add_picture(0.4, 0.6, 0.8, 1.1, kPoster);
-
-    office.add_panel("door jamb west", {kDoorFrom, kNear, kDoorZ}, kNorth, kDown, kWallThickness, kDoorZ,
-                     kOak);
-    office.add_panel("door jamb east", {kDoorTo, 0, kDoorZ}, kSouth, kDown, kWallThickness, kDoorZ, kOak);
-    office.add_panel("door lintel", {kDoorFrom, kNear, kDoorZ}, kEast, kNorth, kDoorWidth, kWallThickness,
-                     kOak);
-    const double opened = 110 * std::numbers::pi / 180;
-    const Vector3d along(std::cos(opened), std::sin(opened), 0);
-    office.add_box("door", {{kDoorFrom, 0.02, 0.01}, along}, {kDoorWidth, 0.04, kDoorZ - 0.02}, kBeech,
-                   kBeech, {});
-    office.add_picture(0.25, 0.45, 0.4, 0.3, kPoster);
 }
 
 /// A top with a thickness on two side panels.
@@ -225,7 +217,33 @@ void add_boards(WorldBuilder& office) {
     }
 }
 
-/// Around the room looking out, through the door, about the corridor and back to the start.
+void add_furniture(WorldBuilder& office) {
+    add_desk(office);
+    add_corner_table(office);
+    add_cupboards(office);
+    add_shelf(office);
+    add_boards(office);
+}
+
+/// Five places of the room, as the paper's Table 2 has them; the way between any two is free.
+std::vector<Waypoint> office_places() {
+    return {{{2.00, 2.60, 1.45}, {0.2, 2.3, 1.0}},
+            {{2.60, 3.40, 1.48}, {1.5, 5.0, 1.1}},
+            {{3.80, 2.95, 1.45}, {5.9, 3.4, 1.1}},
+            {{3.75, 1.75, 1.42}, {4.9, 0.2, 1.1}},
+            {{2.45, 1.85, 1.45}, {1.5, 0.2, 1.0}}};
+}
+
+}  // namespace
+
+void add_office_room(WorldBuilder& office) {
+    add_room(office);
+    add_window(office);
+    add_doorway(office);
+    add_furniture(office);
+    office.world().lamps = {{{1.7, 2.5, 2.5}, 1.1}, {{4.3, 2.4, 2.5}, 1.1}};
+}
+
 std::vector<Waypoint> office_tour() {
     return {{{2.00, 2.40, 1.45}, {0.2, 2.1, 1.0}},   {{2.00, 2.80, 1.45}, {0.3, 3.2, 1.1}},
             {{2.10, 3.20, 1.50}, {0.6, 4.5, 1.2}},   {{2.50, 3.45, 1.50}, {1.5, 5.0, 1.1}},
@@ -243,21 +261,17 @@ std::vector<Waypoint> office_tour() {
             {{2.28, 2.08, 1.45}, {1.2, 0.3, 1.0}},   {{2.10, 2.22, 1.45}, {0.4, 1.2, 1.0}}};
 }
 
-}  // namespace
-
 World make_office(std::uint64_t seed, double texel_scale) {
     WorldBuilder office("office", seed, texel_scale);
     add_room(office);
     add_window(office);
     add_corridor(office);
-    add_desk(office);
-    add_corner_table(office);
-    add_cupboards(office);
-    add_shelf(office);
-    add_boards(office);
+    add_doorway(office);
+    add_furniture(office);
     World& world = office.world();
     world.lamps = {{{1.7, 2.5, 2.5}, 1.1}, {{4.3, 2.4, 2.5}, 1.1}, {{3.3, -0.9, 2.3}, 0.8}};
     world.tour = office_tour();
+    world.places = office_places();
     world.free_from = {1.2, 0.9, 0.4};
     world.free_to = {4.8, 4.2, 2.3};
     return std::move(world);

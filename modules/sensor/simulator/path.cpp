@@ -135,6 +135,36 @@ Trajectory make_hand_path(const std::vector<Waypoint>& waypoints, double duratio
     return path;
 }
 
+std::vector<Waypoint> wander(const std::vector<Waypoint>& places, int visits, std::uint64_t seed) {
+    constexpr double kStep_m = 0.4, kTurn = 30 * kRadians;
+    constexpr int kStand = 3;  // a spline goes through a point that is given three times
+    std::vector<Waypoint> walk;
+    std::size_t here = mix(seed, 29) % places.size();
+    for (int visit = 0; visit < visits; ++visit) {
+        walk.insert(walk.end(), kStand, places[here]);
+        const auto random = static_cast<std::size_t>(mix(seed, 29, static_cast<std::uint64_t>(visit) + 1));
+        const std::size_t next = (here + 1 + random % (places.size() - 1)) % places.size();
+        const Waypoint &from = places[here], &to = places[next];
+        const Vector3d gaze = from.target - from.position, gaze_then = to.target - to.position;
+        const double turn = std::remainder(
+            std::atan2(gaze_then.y(), gaze_then.x()) - std::atan2(gaze.y(), gaze.x()), 2 * std::numbers::pi);
+        const double length = std::hypot(gaze.x(), gaze.y());
+        const double length_then = std::hypot(gaze_then.x(), gaze_then.y());
+        const double steps =
+            std::ceil(std::max((to.position - from.position).norm() / kStep_m, std::abs(turn) / kTurn));
+        for (double step = 1; step < steps; ++step) {
+            const double share = step / steps;
+            const double yaw = std::atan2(gaze.y(), gaze.x()) + share * turn;
+            const double reach = std::lerp(length, length_then, share);
+            const Vector3d position = from.position + share * (to.position - from.position);
+            walk.push_back({position, position + Vector3d(reach * std::cos(yaw), reach * std::sin(yaw),
+                                                          std::lerp(gaze.z(), gaze_then.z(), share))});
+        }
+        here = next;
+    }
+    return walk;
+}
+
 double tour_duration(const std::vector<Waypoint>& tour, const HandOptions& options, std::uint64_t seed) {
     return make_tour(tour, options, seed).duration();
 }

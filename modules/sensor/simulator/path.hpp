@@ -23,6 +23,11 @@ struct HandOptions {
 Trajectory make_hand_path(const std::vector<Waypoint>& tour, double duration_s, std::int64_t start_utime,
                           const HandOptions& options, std::uint64_t seed);
 
+/// A walk that goes from place to place in random order, `visits` of them and never to the same twice
+/// running, and stands a moment at each: waypoints for make_hand_path(). Between two places it goes straight
+/// and turns the shorter way. At least two places.
+std::vector<Waypoint> wander(const std::vector<Waypoint>& places, int visits, std::uint64_t seed);
+
 /// Seconds for one round of the tour.
 double tour_duration(const std::vector<Waypoint>& tour, const HandOptions& options, std::uint64_t seed);
 

@@ -20,9 +20,18 @@ namespace {
 constexpr std::int64_t kStartUtime = 1000000;
 constexpr int kDefaultFrames = 900, kMaxFrames = 1000000;
 
-using MakeWorld = World (*)(std::uint64_t seed, double texel_scale);
-const std::map<std::string, MakeWorld>& worlds() {
-    static const std::map<std::string, MakeWorld> kWorlds{{"office", &make_office}};
+struct KnownWorld {
+    World (*make)(std::uint64_t seed, double texel_scale);
+    const char* what;
+};
+const std::map<std::string, KnownWorld>& worlds() {
+    static const std::map<std::string, KnownWorld> kWorlds{
+        {"building", {&make_building, "a corridor around a block; one round is 100 m"}},
+        {"clutter", {&make_clutter, "small boxes any way up: texture, and no plane"}},
+        {"office", {&make_office, "a furnished room and a corridor; has places to visit"}},
+        {"twins", {&make_twins, "two rooms that nothing tells apart, and a corridor"}},
+        {"wall", {&make_wall, "along a wall of bare paint"}},
+    };
     return kWorlds;
 }
 
@@ -82,6 +91,10 @@ const std::map<std::string, Setter>& setters() {
         {"shutter", number_setter(&O::shutter_s)},
         {"jitter", number_setter(&O::color_jitter_s)},
         {"drift", number_setter(&O::exposure_drift)},
+        {"light", number_setter(&O::light)},
+        {"speed", number_setter(&O::speed_m_s)},
+        {"turn", number_setter(&O::turn_deg_s)},
+        {"visits", number_setter(&O::visits)},
         {"trajectory", [](O& o, const std::string&, const std::string& text) { o.trajectory = text; }}};
     return kSetters;
 }
@@ -159,6 +172,10 @@ void SimulatorOptions::validate() const {
     within(shutter_s, 0, 1, "shutter", "0 to 1");
     within(color_jitter_s, 0, 0.5 / std::max(rate_hz, 0.1), "jitter", "0 to half a frame");
     within(exposure_drift, 0, 0.5, "drift", "0 to 0.5");
+    within(light, 0, 1, "light", "0 to 1");
+    within(speed_m_s, 0.01, 10, "speed", "0.01 to 10");
+    within(turn_deg_s, 1, 1000, "turn", "1 to 1000");
+    within(visits, 0, 10000, "visits", "0 to 10000");
     errors.throw_if_any();
 }
 
@@ -166,6 +183,24 @@ std::vector<std::string> world_names() {
     std::vector<std::string> names;
     for (const auto& [name, unused] : worlds()) names.push_back(name);
     return names;
+}
+
+std::string simulator_help() {
+    std::string text = "Simulated worlds:\n";
+    for (const auto& [name, world] : worlds())
+        text += "  sim:" + name + std::string(12 - name.size(), ' ') + world.what + "\n";
+    return text +
+           "with parameters, as in sim:office?frames=300&seed=7:\n"
+           "  frames, seed, rate (Hz), width, height (pixels), noise (0 or 1), registered (0: depth from a "
+           "camera\n"
+           "  2.5 cm beside), units (of depth, a metre), min, max (depth, m), color_noise (of 255 levels), "
+           "blur\n"
+           "  (views averaged), shutter (s), jitter (colour before or after depth, s), drift (of "
+           "brightness), "
+           "light\n"
+           "  (0: darkness), speed (m/s), turn (deg/s), visits (places in random order), trajectory (file, "
+           "TUM\n"
+           "  format, y down)";
 }
 
 SimulatorOptions parse_simulator_name(const std::string& name) {
@@ -185,15 +220,36 @@ SimulatorOptions parse_simulator_name(const std::string& name) {
 SimulatedSource::SimulatedSource(const SimulatorOptions& options) : options_(options) {
     options_.validate();
     // A small image does not show fine texture.
-    world_ = worlds().at(options_.world)(options_.seed, std::clamp(640.0 / options_.width, 0.5, 8.0));
+    world_ = worlds().at(options_.world).make(options_.seed, std::clamp(640.0 / options_.width, 0.5, 8.0));
     camera_ = make_camera(options_);
     depth_options_ = make_depth_options(options_, camera_);
     if (options_.trajectory.empty()) {
-        frame_count_ = static_cast<std::size_t>(options_.frames > 0 ? options_.frames : kDefaultFrames);
-        const double duration_s = static_cast<double>(frame_count_) / options_.rate_hz + 1;
-        path_ = make_hand_path(world_.tour, duration_s, kStartUtime, {}, options_.seed);
-        return;
+        walk();
+    } else {
+        follow_trajectory();
     }
+}
+
+void SimulatedSource::walk() {
+    HandOptions hand;
+    hand.speed_m_s = options_.speed_m_s;
+    hand.turn_deg_s = options_.turn_deg_s;
+    int frames = kDefaultFrames;
+    std::vector<Waypoint> tour = world_.tour;
+    if (options_.visits > 0) {
+        if (world_.places.size() < 2)
+            throw std::invalid_argument("simulator parameter visits: world " + world_.name +
+                                        " has no places");
+        tour = wander(world_.places, options_.visits, options_.seed);
+        const double round_s = tour_duration(tour, hand, options_.seed);
+        frames = static_cast<int>(std::min<double>(round_s * options_.rate_hz, kMaxFrames));
+    }
+    frame_count_ = static_cast<std::size_t>(options_.frames > 0 ? options_.frames : frames);
+    const double duration_s = static_cast<double>(frame_count_) / options_.rate_hz + 1;
+    path_ = make_hand_path(tour, duration_s, kStartUtime, hand, options_.seed);
+}
+
+void SimulatedSource::follow_trajectory() {
     const Trajectory recorded = read_trajectory(options_.trajectory);
     if (recorded.empty()) throw std::runtime_error(options_.trajectory + ": no poses");
     path_ = fit_path(recorded, world_);
@@ -226,9 +282,9 @@ View SimulatedSource::depth_view(std::size_t i) const {
 
 double SimulatedSource::exposure_at(std::int64_t time_us) const {
     constexpr double kPeriod_s = 7;
-    return 1 -
-           options_.exposure_drift *
-               (0.5 - 0.5 * std::cos(2 * std::numbers::pi * static_cast<double>(time_us) * 1e-6 / kPeriod_s));
+    const double swing =
+        0.5 - 0.5 * std::cos(2 * std::numbers::pi * static_cast<double>(time_us) * 1e-6 / kPeriod_s);
+    return options_.light * (1 - options_.exposure_drift * swing);
 }
 
 RgbImage SimulatedSource::color(std::size_t i, const View& depth_view) const {

@@ -13,7 +13,7 @@ namespace planemap::sim {
 /// What is simulated. In a name, "sim:WORLD?key=value&...", the keys stand in brackets.
 struct SimulatorOptions {
     std::string world = "office";         ///< see world_names()
-    int frames = 0;                       ///< [frames] 0: 900, or the trajectory's length
+    int frames = 0;                       ///< [frames] 0: 900, or the length of the trajectory or the visits
     std::uint64_t seed = 1;               ///< [seed] of textures, walk and noise
     double rate_hz = 30;                  ///< [rate] frames a second
     int width = 640, height = 480;        ///< [width, height] of both images, 16 to 4096 pixels
@@ -26,8 +26,13 @@ struct SimulatorOptions {
     double shutter_s = 0.015;                     ///< [shutter] exposure time of colour with motion blur
     double color_jitter_s = 0;  ///< [jitter] colour is taken up to this much before or after depth
     double exposure_drift = 0;  ///< [drift] brightness swings by this share, 0 to 0.5
-    std::string trajectory;     ///< [trajectory] file of a recorded hand-held trajectory to follow, TUM
-                                ///< format, its world's y pointing down; empty: the world's own walk
+    double light = 1;           ///< [light] brightness, 0 (darkness: noise alone) to 1
+    double speed_m_s = 0.5;     ///< [speed] of the walk, when it does not turn
+    double turn_deg_s = 45;     ///< [turn] of the walk, when it stands
+    int visits = 0;          ///< [visits] instead of its tour, the walk visits the world's places in random
+                             ///< order, so many in all; 0: the tour
+    std::string trajectory;  ///< [trajectory] file of a recorded hand-held trajectory to follow, TUM
+                             ///< format, its world's y pointing down; empty: the world's own walk
 
     /// Throws std::invalid_argument that names every bad field.
     void validate() const;
@@ -35,6 +40,9 @@ struct SimulatorOptions {
 
 /// The worlds there are.
 std::vector<std::string> world_names();
+
+/// For --help: the worlds, a line each, and the parameters that names take.
+std::string simulator_help();
 
 /// Reads "sim:WORLD?key=value&...". Throws std::invalid_argument for an unknown world or key (listing what
 /// there is), a value that is not a number, or one out of range.
@@ -67,6 +75,8 @@ class SimulatedSource : public FrameSource {
     Trajectory ground_truth() const;
 
   private:
+    void walk();
+    void follow_trajectory();
     RgbImage color(std::size_t i, const View& depth_view) const;
     double exposure_at(std::int64_t time_us) const;
 

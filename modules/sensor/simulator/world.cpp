@@ -95,6 +95,33 @@ void WorldBuilder::add_picture(double left, double top, double width, double hei
     world_.rectangles.push_back(picture);
 }
 
+void WorldBuilder::add_world(const World& other, const Vector3d& offset, const std::string& prefix) {
+    const int first_texture = static_cast<int>(world_.textures.size());
+    const auto before = static_cast<std::ptrdiff_t>(world_.surfaces.size());
+    world_.textures.insert(world_.textures.end(), other.textures.begin(), other.textures.end());
+    std::vector<int> surface_here;
+    for (const Surface& surface : other.surfaces) {
+        const Plane plane{surface.plane.normal, surface.plane.d - surface.plane.normal.dot(offset)};
+        const auto end = world_.surfaces.begin() + before;
+        const auto same = std::find_if(world_.surfaces.begin(), end, [&](const Surface& known) {
+            return (known.plane.normal - plane.normal).norm() < 1e-9 &&
+                   std::abs(known.plane.d - plane.d) < 1e-9;
+        });
+        surface_here.push_back(same != end ? static_cast<int>(same - world_.surfaces.begin())
+                                           : surface_of(prefix + surface.name, plane));
+    }
+    for (Rectangle rectangle : other.rectangles) {
+        rectangle.surface = surface_here[static_cast<std::size_t>(rectangle.surface)];
+        rectangle.texture += first_texture;
+        rectangle.centre += offset;
+        world_.rectangles.push_back(rectangle);
+    }
+    for (Lamp lamp : other.lamps) {
+        lamp.position += offset;
+        world_.lamps.push_back(lamp);
+    }
+}
+
 void WorldBuilder::add_box(const std::string& name, const Place& place, const Size& size, const Look& look,
                            const Look& front, const Hidden& hidden) {
     const Vector3d &r = place.right, &up = place.up, f = up.cross(r);

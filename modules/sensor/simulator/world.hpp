@@ -57,6 +57,8 @@ struct World {
     std::vector<Texture> textures;
     std::vector<Lamp> lamps;
     std::vector<Waypoint> tour;  ///< a closed walk; about a step apart
+    /// Where a walk in random order stops, see wander(); the straight way between any two is free.
+    std::vector<Waypoint> places;
     /// The free space that a hand-held trajectory from elsewhere is put into: a box, world frame, metres.
     Eigen::Vector3d free_from = Eigen::Vector3d::Zero(), free_to = Eigen::Vector3d::Zero();
 
@@ -107,6 +109,10 @@ class WorldBuilder {
     void add_box(const std::string& name, const Place& place, const Size& size, const Look& look,
                  const Look& front, const Hidden& hidden);
 
+    /// All that is in another world, moved by `offset`: its surfaces under their names with `prefix` before
+    /// them, or as parts of a surface that is on the same plane; its textures as they are, its lamps.
+    void add_world(const World& other, const Eigen::Vector3d& offset, const std::string& prefix);
+
     World& world() { return world_; }
 
   private:
@@ -124,5 +130,17 @@ class WorldBuilder {
 /// an open door to a corridor.
 /// The seed decides its textures, texel_scale how fine they are (see make_texture()).
 World make_office(std::uint64_t seed, double texel_scale = 1);
+
+/// A corridor of 2.4 m around a block: one round of its tour is 100 m.
+World make_building(std::uint64_t seed, double texel_scale = 1);
+
+/// Two of the office's room, alike to the last texel, 7 m apart; their doors lead to one corridor.
+World make_twins(std::uint64_t seed, double texel_scale = 1);
+
+/// A hall; its tour passes 1.3 m before a wall of which 6 m are bare paint, and nothing else is in view.
+World make_wall(std::uint64_t seed, double texel_scale = 1);
+
+/// Thousands of small boxes any way up around the camera, 4 to 12 cm wide: texture, and no plane.
+World make_clutter(std::uint64_t seed, double texel_scale = 1);
 
 }  // namespace planemap::sim

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench_segmentation/build_info.hpp"
-
-#include <pcl/pcl_config.h>
+#include "build_info/build_info.hpp"
 
 #include <fstream>
-#include <opencv2/core/version.hpp>
 
-namespace planemap::bench {
+namespace planemap {
 
 namespace {
 
@@ -16,6 +13,21 @@ std::string cpu_model() {
         if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
     }
     return "unknown";
+}
+
+/// Of those that the project's kernels or its libraries choose between when they run.
+std::string vector_instructions() {
+#if defined(__x86_64__)
+    std::string text = "SSE2";
+    if (__builtin_cpu_supports("sse4.2")) text += " SSE4.2";
+    if (__builtin_cpu_supports("avx2")) text += " AVX2";
+    if (__builtin_cpu_supports("avx512f")) text += " AVX-512";
+    return text;
+#elif defined(__aarch64__)
+    return "NEON";
+#else
+    return "no known vector instructions";
+#endif
 }
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -31,15 +43,13 @@ constexpr bool kOptimised = false;
 
 }  // namespace
 
-std::string build_info() {
-    std::string text = "CPU       " + cpu_model() + ", one thread\n";
+std::string build_info(const std::string& peers) {
+    std::string text = "CPU       " + cpu_model() + " (" + vector_instructions() + "), one thread\n";
     text += std::string("compiler  GCC-compatible ") + __VERSION__ + ", " + PLANEMAP_BUILD_FLAGS + "\n";
-    text += std::string("peers     PCL ") + PCL_VERSION_PRETTY +
-            " compiled with these flags (PCL_NO_PRECOMPILE); ransac-debian: Debian's build of it; OpenCV " +
-            CV_VERSION + " as Debian builds it\n";
+    text += "peers     " + peers + "\n";
     if (!kOptimised) text += "WARNING   this build is not optimised: its times mean nothing\n";
     if (kSanitized) text += "WARNING   this build is sanitized: its times mean nothing\n";
     return text;
 }
 
-}  // namespace planemap::bench
+}  // namespace planemap

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench_odometry/methods.hpp"
+
+#include <algorithm>
+#include <sstream>
+#include <stdexcept>
+
+#include "bench_odometry/peers.hpp"
+#include "run/input.hpp"
+
+namespace planemap::bench_odometry {
+
+namespace {
+
+PipelineOptions options_of(const std::string& method, PipelineOptions options) {
+    if (method.starts_with("paper")) options.odometry.method = "paper";
+    options.with_graph = !method.ends_with("-no-graph");
+    options.with_map = options.with_octomap = false;
+    return options;
+}
+
+/// The graph's closures, at the moments that its keyframes' poses are of.
+std::vector<Closure> closures_of(Pipeline& pipeline) {
+    const auto pose_utime = [&](int id) {
+        const std::vector<KeyframePose>& keyframes = pipeline.graph().graph().trajectory().keyframes;
+        const auto keyframe =
+            std::find_if(keyframes.begin(), keyframes.end(), [&](const auto& k) { return k.id == id; });
+        if (keyframe == keyframes.end())
+            throw std::logic_error("loop closure with unknown keyframe " + std::to_string(id));
+        const auto& estimates = pipeline.estimates();
+        const auto estimate = std::find_if(estimates.begin(), estimates.end(),
+                                           [&](const auto& e) { return e.utime == keyframe->utime; });
+        return estimate == estimates.end() ? keyframe->utime : estimate->pose_utime;
+    };
+    std::vector<Closure> closures;
+    for (const LoopClosure& closure : pipeline.graph().graph().loop_closures())
+        closures.push_back({pose_utime(closure.from_id), pose_utime(closure.to_id), closure.from_from_to});
+    return closures;
+}
+
+Run run_planemap(const std::string& input_name, std::int64_t max_frames, const PipelineOptions& options,
+                 const std::function<void(std::int64_t)>& on_frame) {
+    Bus bus("memq://");
+    Pipeline pipeline(bus, options);
+    const std::unique_ptr<Input> input = open_input(input_name, bus, options.camera);
+    while ((max_frames == 0 || input->frames() < max_frames) && input->feed()) {
+        pipeline.settle();
+        on_frame(input->frames());
+    }
+    pipeline.finish();
+    Run run;
+    run.frames = input->frames();
+    run.trajectory = pipeline.trajectory();
+    run.tracking = stage_time(pipeline.odometry().status().work_cpu_ms());
+    run.segmentation = stage_time(pipeline.segmentation().status().work_cpu_ms());
+    run.decoding = stage_time(pipeline.decoder().decode_ms());
+    if (options.with_graph) {
+        run.graph = stage_time(pipeline.graph().status().work_cpu_ms());
+        run.keyframes = static_cast<int>(pipeline.graph().graph().trajectory().keyframes.size());
+        run.closures = closures_of(pipeline);
+    }
+    return run;
+}
+
+}  // namespace
+
+const std::vector<MethodInfo>& known_methods() {
+    static const std::vector<MethodInfo> kMethods{
+        {"default", "our odometry and graph with their default options"},
+        {"default-no-graph", "the odometry alone: its drift before any closure"},
+        {"paper", "the paper's odometry (planar points only, frame to frame), and our graph"},
+        {"paper-no-graph", "the paper's odometry alone"},
+        {"opencv-rgbd", "OpenCV's RgbdOdometry (Steinbruecker et al. 2011), frame to frame", true},
+        {"opencv-rgbdicp", "OpenCV's RgbdICPOdometry, frame to frame", true},
+    };
+    return kMethods;
+}
+
+std::vector<MethodInfo> parse_methods(const std::string& list) {
+    std::vector<MethodInfo> methods;
+    std::istringstream words(list);
+    for (std::string word; std::getline(words, word, ',');) {
+        const auto& known = known_methods();
+        const auto method = std::find_if(known.begin(), known.end(),
+                                         [&](const MethodInfo& info) { return info.name == word; });
+        if (method == known.end()) {
+            std::string names;
+            for (const MethodInfo& info : known) names += (names.empty() ? "" : ", ") + info.name;
+            throw std::invalid_argument("methods: there is no \"" + word + "\", only " + names);
+        }
+        methods.push_back(*method);
+    }
+    if (methods.empty()) throw std::invalid_argument("methods: none given");
+    return methods;
+}
+
+Run run_method(const std::string& method, const std::string& input, std::int64_t max_frames,
+               const PipelineOptions& options, const std::function<void(std::int64_t)>& on_frame) {
+    if (method.starts_with("opencv-")) return run_peer(method, input, max_frames, on_frame);
+    return run_planemap(input, max_frames, options_of(method, options), on_frame);
+}
+
+}  // namespace planemap::bench_odometry

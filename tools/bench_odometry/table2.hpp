@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Prints the paper's Table 2.
+#pragma once
+
+#include <cstdio>
+#include <nlohmann/json_fwd.hpp>
+#include <vector>
+
+#include "bench_odometry/benchmark.hpp"
+#include "bench_odometry/revisits.hpp"
+
+namespace planemap::bench_odometry {
+
+/// Mean and deviation over runs of each run's RMSE.
+struct Table2Line {
+    int runs = 0, revisits = 0, lost = 0;
+    Statistics ate_m, rpe_m, rpe_deg;
+};
+Table2Line summarised(const std::vector<RevisitErrors>& runs);
+
+/// Runs the methods through four simulated walks about five places of an office in random order, and through
+/// redkitchen, whose five places are found by its true poses, and prints a table each. Returns its lines for
+/// --json.
+nlohmann::ordered_json print_table2(const Benchmark& benchmark, const std::vector<MethodInfo>& methods,
+                                    std::FILE* out);
+
+}  // namespace planemap::bench_odometry
