@@ -25,25 +25,20 @@ std::optional<Pose> pose_between(const Trajectory& trajectory, std::int64_t utim
     return interpolate(before.world_from_camera, next->world_from_camera, fraction);
 }
 
-ClosureCount count_closures(const Trajectory& truth, const std::vector<Closure>& closures,
-                            const ClosureTolerance& tolerance) {
-    ClosureCount count;
-    for (const Closure& closure : closures) {
-        const auto from = pose_between(truth, closure.from_utime, kMaxGap_us);
-        const auto to = pose_between(truth, closure.to_utime, kMaxGap_us);
-        if (!from || !to) {
-            ++count.unjudged;
-            continue;
-        }
-        const Pose true_from_from_to = from->inverse() * *to;
-        const Pose error = true_from_from_to.inverse() * closure.from_from_to;
-        const double allowed_m =
-            tolerance.base_m + tolerance.share_of_distance * true_from_from_to.translation().norm();
-        const bool right = error.translation().norm() <= allowed_m &&
-                           rotation_angle(error) <= tolerance.angle_deg * std::numbers::pi / 180;
-        ++(right ? count.right : count.wrong);
-    }
-    return count;
+std::optional<ClosureError> judge(const Trajectory& truth, const Closure& closure,
+                                  const ClosureTolerance& tolerance) {
+    const auto from = pose_between(truth, closure.from_utime, kMaxGap_us);
+    const auto to = pose_between(truth, closure.to_utime, kMaxGap_us);
+    if (!from || !to) return std::nullopt;
+    const Pose true_from_from_to = from->inverse() * *to;
+    const Pose difference = true_from_from_to.inverse() * closure.from_from_to;
+    const double allowed_m =
+        tolerance.base_m + tolerance.share_of_distance * true_from_from_to.translation().norm();
+    ClosureError error;
+    error.metres = difference.translation().norm();
+    error.degrees = rotation_angle(difference) * 180 / std::numbers::pi;
+    error.is_false = !(error.metres <= allowed_m && error.degrees <= tolerance.angle_deg);
+    return error;
 }
 
 }  // namespace planemap::bench_odometry

@@ -23,18 +23,19 @@ struct ClosureTolerance {
     double angle_deg = 5;
 };
 
-struct ClosureCount {
-    int right = 0, wrong = 0;
-    int unjudged = 0;  ///< no true pose near one of its moments
-    friend bool operator==(const ClosureCount&, const ClosureCount&) = default;
+/// How far a closure is from the truth.
+struct ClosureError {
+    double metres = 0, degrees = 0;
+    bool is_false = false;
 };
 
 /// The pose of a trajectory at a moment, interpolated between neighbours that are at most max_gap_us apart;
 /// nothing in a wider gap or outside. The trajectory is sorted by time.
 std::optional<Pose> pose_between(const Trajectory& trajectory, std::int64_t utime, std::int64_t max_gap_us);
 
-/// Counts closures whose relative pose is true and false, see ClosureTolerance.
-ClosureCount count_closures(const Trajectory& truth, const std::vector<Closure>& closures,
-                            const ClosureTolerance& tolerance = {});
+/// Compares a closure's relative pose with the true one, see ClosureTolerance; nothing where no true pose is
+/// near one of its moments.
+std::optional<ClosureError> judge(const Trajectory& truth, const Closure& closure,
+                                  const ClosureTolerance& tolerance = {});
 
 }  // namespace planemap::bench_odometry

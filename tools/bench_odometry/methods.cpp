@@ -38,8 +38,8 @@ std::vector<Closure> closures_of(Pipeline& pipeline) {
     return closures;
 }
 
-Run run_planemap(const std::string& input_name, std::int64_t max_frames, const PipelineOptions& options,
-                 const std::function<void(std::int64_t)>& on_frame) {
+MethodRun run_planemap(const std::string& input_name, std::int64_t max_frames, const PipelineOptions& options,
+                       const std::function<void(std::int64_t)>& on_frame) {
     Bus bus("memq://");
     Pipeline pipeline(bus, options);
     const std::unique_ptr<Input> input = open_input(input_name, bus, options.camera);
@@ -48,7 +48,7 @@ Run run_planemap(const std::string& input_name, std::int64_t max_frames, const P
         on_frame(input->frames());
     }
     pipeline.finish();
-    Run run;
+    MethodRun run;
     run.frames = input->frames();
     run.trajectory = pipeline.trajectory();
     run.tracking = stage_time(pipeline.odometry().status().work_cpu_ms());
@@ -94,8 +94,8 @@ std::vector<MethodInfo> parse_methods(const std::string& list) {
     return methods;
 }
 
-Run run_method(const std::string& method, const std::string& input, std::int64_t max_frames,
-               const PipelineOptions& options, const std::function<void(std::int64_t)>& on_frame) {
+MethodRun run_method(const std::string& method, const std::string& input, std::int64_t max_frames,
+                     const PipelineOptions& options, const std::function<void(std::int64_t)>& on_frame) {
     if (method.starts_with("opencv-")) return run_peer(method, input, max_frames, on_frame);
     return run_planemap(input, max_frames, options_of(method, options), on_frame);
 }

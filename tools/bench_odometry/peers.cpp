@@ -84,13 +84,13 @@ class FrameToFrame {
 
 }  // namespace
 
-Run run_peer(const std::string& method, const std::string& input_name, std::int64_t max_frames,
-             const std::function<void(std::int64_t)>& on_frame) {
+MethodRun run_peer(const std::string& method, const std::string& input_name, std::int64_t max_frames,
+                   const std::function<void(std::int64_t)>& on_frame) {
     cv::setNumThreads(1);
     Bus bus("memq://");
     FrameDecoder decoder(bus);
     FrameToFrame odometry(method);
-    Run run;
+    MethodRun run;
     bus.subscribe(channels::kFrame, [&](const RawMessage& message) {
         const auto frame = decoder.decode(message);
         if (!frame) return;

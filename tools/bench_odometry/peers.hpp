@@ -13,7 +13,7 @@ namespace planemap::bench_odometry {
 /// "opencv-rgbdicp". It gets what ours gets: luma, and depth registered to it within the sensor's range. Its
 /// preparation of a frame (pyramids, normals) is in its time and used again for the next pair. A frame that
 /// it cannot align is lost, and the next one is aligned to the last that was not. Throws as open_input().
-Run run_peer(const std::string& method, const std::string& input, std::int64_t max_frames,
-             const std::function<void(std::int64_t)>& on_frame);
+MethodRun run_peer(const std::string& method, const std::string& input, std::int64_t max_frames,
+                   const std::function<void(std::int64_t)>& on_frame);
 
 }  // namespace planemap::bench_odometry

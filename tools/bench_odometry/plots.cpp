@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench_odometry/plots.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -54,6 +55,7 @@ class TopView {
         };
         include(truth);
         for (const Trajectory& other : others) include(other);
+        if (!(low.x() <= high.x())) return;  // nothing to show
         pixels_per_metre_ = (kSize_px - 2 * kMargin_px) / std::max(0.1, (high - low).maxCoeff());
         middle_ = 0.5 * (low + high);
     }
@@ -96,6 +98,21 @@ std::string scale_bar(double pixels_per_metre) {
            text_at(kMargin_px + metres * pixels_per_metre + 8, kY + 5, format("%g m", metres), "#000000");
 }
 
+/// The truth from the first to the last moment that any of the others is of.
+Trajectory within(const Trajectory& truth, const std::vector<Trajectory>& others) {
+    std::int64_t first = std::numeric_limits<std::int64_t>::max(),
+                 last = std::numeric_limits<std::int64_t>::min();
+    for (const Trajectory& other : others) {
+        if (other.empty()) continue;
+        first = std::min(first, other.front().utime);
+        last = std::max(last, other.back().utime);
+    }
+    Trajectory result;
+    for (const StampedPose& pose : truth)
+        if (pose.utime >= first && pose.utime <= last) result.push_back(pose);
+    return result;
+}
+
 }  // namespace
 
 Vector3d up_direction(const Trajectory& trajectory) {
@@ -108,7 +125,7 @@ Vector3d up_direction(const Trajectory& trajectory) {
     return std::copysign(1.0, up[axis]) * Vector3d::Unit(axis);
 }
 
-std::string plot_svg(const std::string& title, const Trajectory& truth, const std::vector<Row>& rows) {
+std::string plot_svg(const std::string& title, const Trajectory& whole_truth, const std::vector<Row>& rows) {
     std::vector<const Row*> shown;
     std::vector<Trajectory> aligned;
     for (const Row& row : rows) {
@@ -118,6 +135,7 @@ std::string plot_svg(const std::string& title, const Trajectory& truth, const st
         for (StampedPose& pose : aligned.back())
             pose.world_from_camera = row.evaluation->ate->truth_from_estimate * pose.world_from_camera;
     }
+    const Trajectory truth = within(whole_truth, aligned);
     const TopView view(truth, aligned);
     std::string svg = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" +
                       format("%.0f", kSize_px + kLegend_px) + "\" height=\"" + format("%.0f", kSize_px) +

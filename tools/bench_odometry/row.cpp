@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench_odometry/row.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -17,7 +18,7 @@ struct Figures {
     double path_m = kUnknown, ate_m = kUnknown, scale = kUnknown;
     double frame_m = kUnknown, frame_deg = kUnknown, second_m = kUnknown, second_deg = kUnknown;
     double tracking_ms = kUnknown, tracking_p95_ms = kUnknown, segmentation_ms = kUnknown;
-    double loops_true = kUnknown, loops_false = kUnknown, loops_unjudged = kUnknown;
+    double loops_true = kUnknown, loops_false = kUnknown;
 };
 
 Figures figures_of(const Row& row) {
@@ -25,8 +26,9 @@ Figures figures_of(const Row& row) {
     if (row.evaluation) {
         const Evaluation& e = *row.evaluation;
         f.path_m = e.path_length_m;
-        f.loops_true = row.loops.right;
-        f.loops_false = row.loops.wrong;
+        f.loops_true = f.loops_false = 0;
+        for (const auto& loop : row.loops)
+            if (loop) ++(loop->is_false ? f.loops_false : f.loops_true);
         if (e.ate) {
             f.ate_m = e.ate->metres.rmse;
             f.scale = e.ate->scale;
@@ -40,7 +42,6 @@ Figures figures_of(const Row& row) {
             f.second_deg = e.rpe_1s->degrees.rmse;
         }
     }
-    f.loops_unjudged = row.loops.unjudged;
     if (row.run.tracking.count > 0) {
         f.tracking_ms = row.run.tracking.median_ms;
         f.tracking_p95_ms = row.run.tracking.p95_ms;
@@ -49,12 +50,15 @@ Figures figures_of(const Row& row) {
     return f;
 }
 
-std::string format(const char* pattern, double value) {
+/// A number right-aligned in `width` characters; "-" if it is not known.
+std::string cell(double value, int width, int decimals) {
     char text[32];
-    const bool known = std::isfinite(value);
-    std::snprintf(text, sizeof(text), pattern, known ? value : 0.0);
-    if (known) return text;
-    return std::string(std::string(text).size() - 1, ' ') + "-";
+    if (std::isfinite(value)) {
+        std::snprintf(text, sizeof(text), "%*.*f", width, decimals, value);
+    } else {
+        std::snprintf(text, sizeof(text), "%*s", width, "-");
+    }
+    return text;
 }
 
 /// JSON has no NaN.
@@ -68,22 +72,37 @@ nlohmann::ordered_json count(double value) {
     return std::lround(value);
 }
 
+/// Where to look: moments and errors of the false closures.
+nlohmann::ordered_json false_loops(const Row& row) {
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    for (std::size_t i = 0; i < row.loops.size(); ++i) {
+        if (!row.loops[i] || !row.loops[i]->is_false) continue;
+        list.push_back({{"from_utime", row.run.closures[i].from_utime},
+                        {"to_utime", row.run.closures[i].to_utime},
+                        {"error_m", row.loops[i]->metres},
+                        {"error_deg", row.loops[i]->degrees}});
+    }
+    return list;
+}
+
 }  // namespace
 
 Row make_row(const std::string& sequence, const std::string& method, const std::optional<Trajectory>& truth,
-             Run run) {
+             MethodRun run) {
     Row row;
     row.sequence = sequence;
     row.method = method;
     row.run = std::move(run);
     if (truth) row.evaluation = evaluate(*truth, row.run.trajectory, {});
-    row.loops = count_closures(truth.value_or(Trajectory()), row.run.closures);
+    for (const Closure& closure : row.run.closures)
+        row.loops.push_back(judge(truth.value_or(Trajectory()), closure));
     return row;
 }
 
 std::string table_heading() {
-    return "method            frames lost |  ATE m | frame mm    deg |  1 s mm    deg | scale % | "
-           "    ms    p95   seg ms  graph s | CPU s RSS MB |  kf true false\n";
+    return "method            frames lost |   ATE m | frame mm    deg |   1 s mm    deg | scale % |     ms   "
+           " p95 "
+           "  seg ms  graph s |   CPU s  RSS MB |   kf true false\n";
 }
 
 std::string table_line(const Row& row) {
@@ -91,14 +110,12 @@ std::string table_line(const Row& row) {
     char start[64];
     std::snprintf(start, sizeof(start), "%-17s %6lld %4lld", row.method.c_str(),
                   static_cast<long long>(row.run.frames), static_cast<long long>(row.lost()));
-    return start + format(" | %6.4f", f.ate_m) + format(" | %8.2f", 1e3 * f.frame_m) +
-           format(" %6.3f", f.frame_deg) + format(" | %7.1f", 1e3 * f.second_m) +
-           format(" %6.3f", f.second_deg) + format(" | %7.2f", 100 * (f.scale - 1)) +
-           format(" | %6.2f", f.tracking_ms) + format(" %6.2f", f.tracking_p95_ms) +
-           format(" %8.2f", f.segmentation_ms) + format(" %8.2f", row.run.graph.total_s) +
-           format(" | %5.1f", row.cpu_s) + format(" %6.0f", row.peak_rss_mb) +
-           format(" | %3.0f", row.run.keyframes) + format(" %4.0f", f.loops_true) +
-           format(" %5.0f\n", f.loops_false);
+    return start + (" | " + cell(f.ate_m, 7, 4)) + " | " + cell(1e3 * f.frame_m, 8, 2) +
+           cell(f.frame_deg, 7, 3) + " | " + cell(1e3 * f.second_m, 8, 1) + cell(f.second_deg, 7, 3) + " | " +
+           cell(100 * (f.scale - 1), 7, 2) + " | " + cell(f.tracking_ms, 6, 2) +
+           cell(f.tracking_p95_ms, 7, 2) + cell(f.segmentation_ms, 9, 2) + cell(row.run.graph.total_s, 9, 2) +
+           " | " + cell(row.cpu_s, 7, 1) + cell(row.peak_rss_mb, 8, 0) + " | " +
+           cell(row.run.keyframes, 4, 0) + cell(f.loops_true, 5, 0) + cell(f.loops_false, 6, 0) + "\n";
 }
 
 nlohmann::ordered_json to_json(const Row& row) {
@@ -126,7 +143,9 @@ nlohmann::ordered_json to_json(const Row& row) {
             {"keyframes", row.run.keyframes},
             {"loops_true", count(f.loops_true)},
             {"loops_false", count(f.loops_false)},
-            {"loops_unjudged", count(f.loops_unjudged)}};
+            {"loops_unjudged",
+             std::count_if(row.loops.begin(), row.loops.end(), [](const auto& l) { return !l; })},
+            {"false_loops", false_loops(row)}};
 }
 
 }  // namespace planemap::bench_odometry

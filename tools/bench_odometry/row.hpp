@@ -5,6 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "bench_odometry/run.hpp"
 #include "evaluate/evaluation.hpp"
@@ -13,10 +14,10 @@ namespace planemap::bench_odometry {
 
 struct Row {
     std::string sequence, method;
-    Run run;
-    double cpu_s = 0, peak_rss_mb = 0;     ///< of the whole process, reading and decoding included
-    std::optional<Evaluation> evaluation;  ///< nothing without truth
-    ClosureCount loops;
+    MethodRun run;
+    double cpu_s = 0, peak_rss_mb = 0;               ///< of the whole process, reading and decoding included
+    std::optional<Evaluation> evaluation;            ///< nothing without truth
+    std::vector<std::optional<ClosureError>> loops;  ///< of run.closures, see judge()
 
     /// Frames without a pose: broken ones, and those before the first keyframe, included.
     std::int64_t lost() const { return run.frames - static_cast<std::int64_t>(run.trajectory.size()); }
@@ -24,7 +25,7 @@ struct Row {
 
 /// Compares a run with the truth, if there is one.
 Row make_row(const std::string& sequence, const std::string& method, const std::optional<Trajectory>& truth,
-             Run run);
+             MethodRun run);
 
 /// The heading and the lines of a table with aligned columns; "-" for what the data does not allow.
 std::string table_heading();

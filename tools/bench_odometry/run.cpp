@@ -37,7 +37,7 @@ StageTime stage_time(const Histogram& ms) {
     return {ms.median(), ms.p95(), ms.sum() / 1000, ms.count()};
 }
 
-Json to_json(const Run& run) {
+Json to_json(const MethodRun& run) {
     Json trajectory = Json::array(), closures = Json::array();
     for (const StampedPose& pose : run.trajectory)
         trajectory.push_back({pose.utime, pose_to_json(pose.world_from_camera)});
@@ -53,8 +53,8 @@ Json to_json(const Run& run) {
             {"closures", closures}};
 }
 
-Run run_from_json(const Json& json) {
-    Run run;
+MethodRun run_from_json(const Json& json) {
+    MethodRun run;
     run.frames = json.at("frames");
     for (const Json& pose : json.at("trajectory"))
         run.trajectory.push_back({pose.at(0).get<std::int64_t>(), pose_from_json(pose.at(1))});

@@ -19,7 +19,7 @@ struct StageTime {
 };
 StageTime stage_time(const Histogram& ms);
 
-struct Run {
+struct MethodRun {
     std::int64_t frames = 0;  ///< read, lost and broken ones included
     Trajectory trajectory;    ///< frames that have a pose, at the moments that they are of
     StageTime tracking;       ///< the odometry, or the peer, a frame
@@ -31,7 +31,7 @@ struct Run {
 };
 
 /// For the way from a child process to its parent: exact.
-nlohmann::json to_json(const Run& run);
-Run run_from_json(const nlohmann::json& json);
+nlohmann::json to_json(const MethodRun& run);
+MethodRun run_from_json(const nlohmann::json& json);
 
 }  // namespace planemap::bench_odometry

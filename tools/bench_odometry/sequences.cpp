@@ -98,9 +98,7 @@ std::filesystem::path render(const SequenceInfo& info, const std::string& simula
     SensorShellOptions encoding;
     encoding.speed = 0;
     SensorShell sensor(bus, std::move(source), encoding);
-    const std::filesystem::path beside = log.string() + ".unfinished";
-    record(sensor, bus, part ? options.frames : 0, beside, on_frame);
-    std::filesystem::rename(beside, log);
+    record(sensor, bus, part ? options.frames : 0, log, on_frame);
     return log;
 }
 

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench_odometry/benchmark.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "sensor/temporary_folder.hpp"
+
+namespace planemap::bench_odometry {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+TEST(Benchmark, RunsMethodsOnARenderedSequence) {
+    const TemporaryFolder folder;
+    BenchmarkOptions options;
+    options.cache = folder.path();
+    options.frames = 15;
+    options.slow_frames = 8;
+    options.quiet = true;
+    const Benchmark benchmark(options);
+    std::string missing;
+    const auto sequence = benchmark.open({"sim:tiny", "", "office?width=320&height=240", ""}, missing);
+    ASSERT_TRUE(sequence) << missing;
+    for (const MethodInfo& method : parse_methods("default,opencv-rgbdicp")) {
+        const Row row = benchmark.run(*sequence, method);
+        EXPECT_EQ(row.method, method.name);
+        EXPECT_EQ(row.run.frames, method.slow ? 8 : 15);
+        EXPECT_EQ(row.lost(), 0);
+        ASSERT_TRUE(row.evaluation && row.evaluation->ate);
+        EXPECT_LT(row.evaluation->ate->metres.rmse, 0.03);
+        EXPECT_GT(row.cpu_s, 0);
+        EXPECT_GT(row.peak_rss_mb, 5);
+    }
+}
+
+TEST(Benchmark, ErrorsNameMethodSequenceAndReason) {
+    const Benchmark benchmark({});
+    EXPECT_THAT(error_of([&] {
+                    benchmark.run({"kitchen", "/no/such/folder", std::nullopt}, known_methods().at(0));
+                }),
+                AllOf(HasSubstr("default on kitchen"), HasSubstr("/no/such/folder")));
+    BenchmarkOptions bad;
+    bad.frames = -1;
+    bad.slow_frames = -2;
+    EXPECT_THAT(error_of([&] { Benchmark{bad}; }), AllOf(HasSubstr("frames"), HasSubstr("slow-frames")));
+}
+
+}  // namespace
+}  // namespace planemap::bench_odometry
