@@ -32,7 +32,8 @@ void check(const PinholeCamera& camera, const std::string& name, FieldErrors& er
 
 void CameraInfo::validate() const {
     FieldErrors errors("camera info");
-    errors.require(serial.size() <= 64, "serial", serial.substr(0, 64) + "...", "at most 64 characters");
+    if (serial.size() > 64)
+        errors.require(false, "serial", serial.substr(0, 64) + "...", "at most 64 characters");
     check(depth, "depth", errors);
     check(color, "color", errors);
     errors.require(is_valid(color_from_depth), "color_from_depth", "not a rigid transform",

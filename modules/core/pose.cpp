@@ -43,6 +43,11 @@ Twist twist_from_pose(const Pose& pose) {
     return twist;
 }
 
+Eigen::Vector3d moved(const Twist& twist, const Eigen::Vector3d& p) {
+    const Eigen::Vector3d rotation = twist.tail<3>(), turn = rotation.cross(p);
+    return p + twist.head<3>() + turn + 0.5 * rotation.cross(turn);
+}
+
 double rotation_angle(const Pose& pose) {
     return so3_log(pose.linear()).norm();
 }

@@ -32,6 +32,9 @@ Pose pose_from_twist(const Twist& twist);
 /// Inverse of pose_from_twist().
 Twist twist_from_pose(const Pose& pose);
 
+/// pose_from_twist(twist) * p to second order in the rotation: for small motions, without trigonometry.
+Eigen::Vector3d moved(const Twist& twist, const Eigen::Vector3d& p);
+
 /// Rotation angle of a transform in radians, in [0, pi].
 double rotation_angle(const Pose& pose);
 

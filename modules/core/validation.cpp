@@ -7,6 +7,7 @@
 namespace planemap {
 
 void FieldErrors::require(bool ok, std::string_view field, double value, std::string_view allowed) {
+    if (ok) return;
     std::ostringstream number;
     number << value;
     require(ok, field, number.str(), allowed);

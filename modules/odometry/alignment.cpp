@@ -2,6 +2,7 @@
 #include "odometry/alignment.hpp"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 
 namespace planemap {
@@ -9,41 +10,61 @@ namespace {
 
 constexpr double kNearest = 0.05;  // metres; nothing nearer to the camera is measured
 
-using Matrix7d = Eigen::Matrix<double, 7, 7>;
-using Vector7d = Eigen::Matrix<double, 7, 1>;
+using Matrix8d = Eigen::Matrix<double, 8, 8>;
+using Vector8d = Eigen::Matrix<double, 8, 1>;
 
-/// Normal equations in (x, time offset).
+constexpr int kOffset = 6, kReadout = 7;
+
+/// Normal equations in (x, time offset, readout); the readout is not solved for.
 struct Normal {
-    Matrix7d information = Matrix7d::Zero();
-    Vector7d gradient = Vector7d::Zero();
+    Matrix8d information = Matrix8d::Zero();
+    Vector8d gradient = Vector8d::Zero();
 };
 
 double heavy_tail_weight(double squared_sigmas, double scale) {
     return 1 / (1 + squared_sigmas / (scale * scale));
 }
 
-/// Adds one scalar residual; its derivative by the time offset is row * velocity.
-void add_row(const Eigen::Matrix<double, 1, 6>& row, double time_derivative, double residual, double weight,
-             Normal& normal) {
-    Vector7d j;
-    j << row.transpose(), time_derivative;
+void add_row(const Vector8d& j, double residual, double weight, Normal& normal) {
     normal.information.noalias() += (weight * j) * j.transpose();
     normal.gradient.noalias() += (weight * residual) * j;
 }
 
+/// Where a point is when the colour image and when the depth image shows it, camera frame.
+struct Seen {
+    Eigen::Vector3d in_color, in_depth;
+};
+
+Seen see(const Alignment& a, const PointTerm& term, const Pose& camera_from_keyframe, double offset) {
+    const Eigen::Vector3d p = camera_from_keyframe * term.point;
+    const double late = a.readout_s * row_share(a.camera, term.pixel.y());
+    return {moved((offset + late) * a.velocity, p), moved(late * a.velocity, p)};
+}
+
 void add_points(const Alignment& a, const Pose& camera_from_keyframe, double offset, Normal& normal) {
-    const Pose color_from_keyframe = pose_from_twist(offset * a.velocity) * camera_from_keyframe;
     for (const PointTerm& term : a.points) {
+        const Seen seen = see(a, term, camera_from_keyframe, offset);
         Eigen::Vector3d r, r_depth;
         Eigen::Matrix<double, 3, 6> j, j_depth;
-        if (!point_residual(a.camera, term, color_from_keyframe, r, &j) ||
-            !point_residual(a.camera, term, camera_from_keyframe, r_depth, &j_depth))
+        if (!point_residual(a.camera, term, seen.in_color, r, &j) ||
+            !point_residual(a.camera, term, seen.in_depth, r_depth, &j_depth))
             continue;
+        // The derivative by time is that by the motion of a second; by the readout, that of the row's share
+        // of it, and of the point.
+        const double share = row_share(a.camera, term.pixel.y());
+        const Eigen::Vector3d rate = camera_from_keyframe.linear() * term.point_per_readout;
+        const auto full_row = [&](const Eigen::Matrix<double, 1, 6>& by_motion, bool is_color) {
+            const double by_time = by_motion.dot(a.velocity);
+            Vector8d row;
+            row << by_motion.transpose(), is_color ? by_time : 0,
+                share * by_time + by_motion.head<3>().dot(rate);
+            return row;
+        };
         const double weight = heavy_tail_weight(r.head<2>().squaredNorm(), a.loss_scale);
-        add_row(j.row(0), j.row(0).dot(a.velocity), r.x(), weight, normal);
-        add_row(j.row(1), j.row(1).dot(a.velocity), r.y(), weight, normal);
+        add_row(full_row(j.row(0), true), r.x(), weight, normal);
+        add_row(full_row(j.row(1), true), r.y(), weight, normal);
         if (term.inverse_depth > 0)
-            add_row(j_depth.row(2), 0, r_depth.z(),
+            add_row(full_row(j_depth.row(2), false), r_depth.z(),
                     heavy_tail_weight(r_depth.z() * r_depth.z(), a.loss_scale), normal);
     }
 }
@@ -57,14 +78,13 @@ void add_quadratics(const Alignment& a, const Pose& camera_from_keyframe, Normal
 }
 
 void mark_inliers(const Alignment& a, AlignmentResult& result) {
-    const Pose color_from_keyframe =
-        pose_from_twist(result.color_offset_s * a.velocity) * result.camera_from_keyframe;
     double squared_px = 0;
     result.inlier.assign(a.points.size(), 0);
     for (std::size_t i = 0; i < a.points.size(); ++i) {
+        const Seen seen = see(a, a.points[i], result.camera_from_keyframe, result.color_offset_s);
         Eigen::Vector3d r, r_depth;
-        if (!point_residual(a.camera, a.points[i], color_from_keyframe, r) ||
-            !point_residual(a.camera, a.points[i], result.camera_from_keyframe, r_depth))
+        if (!point_residual(a.camera, a.points[i], seen.in_color, r) ||
+            !point_residual(a.camera, a.points[i], seen.in_depth, r_depth))
             continue;
         if (!(r.head<2>().norm() < a.inlier_sigmas && std::abs(r_depth.z()) < 2 * a.inlier_sigmas)) continue;
         result.inlier[i] = 1;
@@ -76,9 +96,8 @@ void mark_inliers(const Alignment& a, AlignmentResult& result) {
 
 }  // namespace
 
-bool point_residual(const PinholeCamera& camera, const PointTerm& term, const Pose& camera_from_keyframe,
+bool point_residual(const PinholeCamera& camera, const PointTerm& term, const Eigen::Vector3d& p,
                     Eigen::Vector3d& residual, Eigen::Matrix<double, 3, 6>* jacobian) {
-    const Eigen::Vector3d p = camera_from_keyframe * term.point;
     if (!(p.z() > kNearest)) return false;
     const double inverse = 1 / p.z(), x = p.x() * inverse, y = p.y() * inverse;
     const double u_scale = camera.fx / term.pixel_sigma, v_scale = camera.fy / term.pixel_sigma;
@@ -103,26 +122,32 @@ AlignmentResult align(const Alignment& a, const Pose& initial, int max_iteration
     result.color_offset_s = a.color_offset_s;
     const double offset_information = 1 / (a.color_offset_sigma_s * a.color_offset_sigma_s);
     Normal normal;
+    Eigen::LDLT<Eigen::Matrix<double, kReadout, kReadout>> solver;
     for (int i = 0; i < max_iterations && !result.converged; ++i) {
         normal = Normal{};
         add_points(a, result.camera_from_keyframe, result.color_offset_s, normal);
         add_quadratics(a, result.camera_from_keyframe, normal);
-        normal.information(6, 6) += offset_information;
-        normal.gradient(6) += offset_information * (result.color_offset_s - a.color_offset_s);
-        const Eigen::LDLT<Matrix7d> solver(normal.information);
-        const Vector7d step = -solver.solve(normal.gradient);
+        normal.information(kOffset, kOffset) += offset_information;
+        normal.gradient(kOffset) += offset_information * (result.color_offset_s - a.color_offset_s);
+        const auto solvable = normal.information.topLeftCorner<kReadout, kReadout>();
+        solver.compute(solvable);
+        const Eigen::Matrix<double, kReadout, 1> step = -solver.solve(normal.gradient.head<kReadout>());
         if (!step.allFinite()) return result;
         result.camera_from_keyframe = pose_from_twist(step.head<6>()) * result.camera_from_keyframe;
         result.color_offset_s += step(6);
         result.converged = step.head<6>().norm() < 1e-4;
     }
     result.camera_from_keyframe = orthonormalised(result.camera_from_keyframe);
-    // The time offset is marginalised out.
+    // The time offset is marginalised out; and all else out of the readout.
     result.information = normal.information.topLeftCorner<6, 6>();
-    if (normal.information(6, 6) > 0) {
-        const Twist coupling = normal.information.topRightCorner<6, 1>();
-        result.information -= coupling * coupling.transpose() / normal.information(6, 6);
+    if (normal.information(kOffset, kOffset) > 0) {
+        const Twist coupling = normal.information.block<6, 1>(0, kOffset);
+        result.information -= coupling * coupling.transpose() / normal.information(kOffset, kOffset);
     }
+    const Eigen::Matrix<double, kReadout, 1> coupling = normal.information.topRightCorner<kReadout, 1>();
+    const Eigen::Matrix<double, kReadout, 1> solved = solver.solve(coupling);
+    result.readout_information = std::max(0.0, normal.information(kReadout, kReadout) - coupling.dot(solved));
+    result.readout_gradient = normal.gradient(kReadout) - solved.dot(normal.gradient.head<kReadout>());
     mark_inliers(a, result);
     return result;
 }

@@ -16,6 +16,8 @@ struct PointTerm {
     double pixel_sigma = 1;                           ///< pixels
     double inverse_depth = 0;        ///< 1 / depth at that pixel in the current depth image, 1/m; 0: unknown
     double inverse_depth_sigma = 1;  ///< of inverse_depth against the point's, 1/m
+    /// By how much `point` would move for a second more of readout, m/s.
+    Eigen::Vector3d point_per_readout = Eigen::Vector3d::Zero();
 };
 
 /// A cost 0.5 x' information x + gradient' x in the small motion x of the camera about `at`:
@@ -27,7 +29,8 @@ struct QuadraticTerm {
 };
 
 /// What align() minimises. The unknowns are camera_from_keyframe at the depth image's time and the time from
-/// the depth image to the colour image; features are seen at the colour image's time.
+/// the depth image to the colour image; features are seen at the colour image's time. With a rolling shutter
+/// an image's time is that of its middle row, and others are later or earlier (see row_share()).
 struct Alignment {
     PinholeCamera camera;
     std::span<const PointTerm> points;
@@ -35,6 +38,7 @@ struct Alignment {
     Twist velocity = Twist::Zero();  ///< d/dt of the camera: camera(t + s) = pose_from_twist(s v) camera(t)
     double color_offset_s = 0;       ///< expected time of the colour image after the depth image
     double color_offset_sigma_s = 0.01;
+    double readout_s = 0;      ///< from the first row to the last, of both images; 0: global shutter
     double loss_scale = 2;     ///< sigmas at which the loss halves a residual's weight (Student-t like)
     double inlier_sigmas = 3;  ///< residuals beyond are outliers in the result
 };
@@ -46,16 +50,23 @@ struct AlignmentResult {
     std::vector<char> inlier;                 ///< one per point
     int inliers = 0;
     double residual_px = 0;  ///< RMS reprojection error of the inliers, pixels
+    /// Cost of another readout r, with pose and offset at their best for it:
+    /// 0.5 readout_information (r - readout_s)^2 + readout_gradient (r - readout_s).
+    double readout_information = 0, readout_gradient = 0;
     bool converged = false;  ///< the last step was small and all values are finite
 };
 
 /// Gauss-Newton with a heavy-tailed weight on the points, from `initial`.
 AlignmentResult align(const Alignment& alignment, const Pose& initial, int max_iterations = 20);
 
-/// Residuals of one point in sigmas (u, v, inverse depth; the last is 0 when unknown) at
-/// camera_from_keyframe, and their derivative by x (see QuadraticTerm). False when the point is behind the
-/// camera.
-bool point_residual(const PinholeCamera& camera, const PointTerm& term, const Pose& camera_from_keyframe,
+/// Residuals of one point in sigmas (u, v, inverse depth; the last is 0 when unknown) when it is at p_camera,
+/// and their derivative by x (see QuadraticTerm). False when the point is behind the camera.
+bool point_residual(const PinholeCamera& camera, const PointTerm& term, const Eigen::Vector3d& p_camera,
                     Eigen::Vector3d& residual, Eigen::Matrix<double, 3, 6>* jacobian = nullptr);
+
+/// When row v of an image is seen, as a share of the readout after the image's time: -0.5 to 0.5.
+inline double row_share(const PinholeCamera& camera, double v) {
+    return (v + 0.5) / camera.height - 0.5;
+}
 
 }  // namespace planemap

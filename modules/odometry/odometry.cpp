@@ -9,7 +9,9 @@
 
 #include "odometry/features.hpp"
 #include "odometry/known_keyframes.hpp"
+#include "odometry/motion_filter.hpp"
 #include "odometry/ransac.hpp"
+#include "odometry/readout.hpp"
 #include "odometry/tracker.hpp"
 
 namespace planemap {
@@ -67,6 +69,9 @@ struct Located {
     bool relocalised = false;  ///< against a remembered keyframe that can no longer be tracked against
 
     Pose keyframe_from_camera() const { return track.alignment.camera_from_keyframe.inverse(); }
+    void move_to(const Pose& odom_from_camera) {
+        track.alignment.camera_from_keyframe = odom_from_camera.inverse() * odom_from_keyframe;
+    }
     Pose odom_from_camera() const { return orthonormalised(odom_from_keyframe * keyframe_from_camera()); }
     /// Small motions of keyframe_from_camera in the camera frame are those of camera_from_keyframe reversed.
     Matrix6d covariance() const { return track.alignment.information.ldlt().solve(Matrix6d::Identity()); }
@@ -76,11 +81,17 @@ struct Located {
 
 class Odometry::State {
   public:
-    explicit State(const OdometryOptions& options) : options_(options), known_(options.max_known_keyframes) {}
+    explicit State(const OdometryOptions& options)
+        : options_(options), known_(options.max_known_keyframes), filter_(options.max_prediction_s) {}
 
     OdometryResult process(const OdometryFrame& frame);
 
   private:
+    /// True when the motion of the last frames tells how the camera moves now.
+    bool knows_velocity(std::int64_t utime) const {
+        return lost_frames_ == 0 && utime > pose_utime_ &&
+               seconds(utime - pose_utime_) <= options_.max_prediction_s;
+    }
     PreparedFrame prepare(const OdometryFrame& frame) const;
     Guess predict(std::int64_t utime, const LocalKeyframe& keyframe, bool moving) const;
     std::optional<Located> locate(const PreparedFrame& view);
@@ -91,7 +102,7 @@ class Odometry::State {
     bool is_plausible(const Pose& odom_from_camera, std::int64_t utime) const;
     std::optional<Located> relocalise(const PreparedFrame& view);
 
-    void follow(const PreparedFrame& view, const Located& located);
+    void follow(const PreparedFrame& view, Located& located);
     void remember_flow(PreparedFrame& view, const Track& track);
     bool wants_keyframe(const PreparedFrame& view, const Located& located) const;
     std::optional<std::size_t> other_keyframe(const PreparedFrame& view, const Located& located,
@@ -113,8 +124,8 @@ class Odometry::State {
 
     std::int64_t utime_ = 0;       ///< of the last frame
     std::int64_t pose_utime_ = 0;  ///< of the last frame with a pose
-    Pose odom_from_camera_ = Pose::Identity();
-    Twist velocity_ = Twist::Zero();  ///< per second, camera frame, see Alignment::velocity
+    MotionFilter filter_;          ///< of the last frame with a pose
+    Readout readout_;
     int lost_frames_ = 0;
     DenseReference last_dense_;  ///< of the last frame with a pose
     FlowPyramid last_pyramid_;   ///< of the last frame, when it was tracked by features
@@ -130,6 +141,7 @@ PreparedFrame Odometry::State::prepare(const OdometryFrame& frame) const {
     view.gray = frame.gray;
     view.depth = frame.depth;
     view.camera = frame.camera;
+    view.readout_s = knows_velocity(frame.utime) ? readout_.seconds() : 0;
     if (frame.gray) {
         if (frame.color_utime != 0) view.color_offset_s = seconds(frame.color_utime - frame.utime);
         view.pyramid =
@@ -145,17 +157,17 @@ PreparedFrame Odometry::State::prepare(const OdometryFrame& frame) const {
 Guess Odometry::State::predict(std::int64_t utime, const LocalKeyframe& keyframe, bool moving) const {
     Guess guess;
     const double elapsed = std::clamp(seconds(utime - pose_utime_), 0.0, 10.0);
-    const Twist motion = velocity_ * (moving ? std::min(elapsed, options_.max_prediction_s) : 0.0);
+    const Twist motion = filter_.velocity() * (moving ? std::min(elapsed, options_.max_prediction_s) : 0.0);
     guess.camera_from_keyframe =
-        pose_from_twist(motion) * odom_from_camera_.inverse() * keyframe.odom_from_keyframe;
+        pose_from_twist(motion) * filter_.odom_from_camera().inverse() * keyframe.odom_from_keyframe;
     const double off = kUsual + options_.acceleration * elapsed * elapsed;
     const double turned = kUsual + options_.angular_acceleration * elapsed * elapsed;
     guess.information.diagonal() << Eigen::Vector3d::Constant(1 / (off * off)),
         Eigen::Vector3d::Constant(1 / (turned * turned));
     if (!moving) return guess;
-    guess.velocity = velocity_;
-    guess.last_from_keyframe = odom_from_camera_.inverse() * keyframe.odom_from_keyframe;
-    if (elapsed <= options_.max_prediction_s) guess.elapsed_s = elapsed;
+    guess.velocity = filter_.velocity();
+    guess.predicted_from_keyframe = guess.camera_from_keyframe;
+    if (knows_velocity(utime)) guess.velocity_gain = filter_.velocity_gain(elapsed);
     return guess;
 }
 
@@ -169,32 +181,39 @@ OdometryResult Odometry::State::process(const OdometryFrame& frame) {
     estimate.utime = estimate.pose_utime = frame.utime;
     const bool restart = local_.empty() || other_camera || frame.utime < utime_;
     utime_ = frame.utime;
-    if (other_camera) known_.clear();
+    if (other_camera) {
+        known_.clear();
+        readout_ = {};
+    }
     if (restart) {
-        result.keyframe = begin(view, odom_from_camera_);
+        result.keyframe = begin(view, filter_.odom_from_camera());
         if (!result.keyframe) {
             local_.clear();
             return result;
         }
         estimate.status = TrackingStatus::kTracked;
-        estimate.odom_from_camera = odom_from_camera_;
+        estimate.odom_from_camera = filter_.odom_from_camera();
         estimate.keyframe_id = result.keyframe->id;
         estimate.features = estimate.inliers = static_cast<int>(current().points.size());
         return result;
     }
 
-    const std::optional<Located> located = locate(view);
+    std::optional<Located> located = locate(view);
     if (!located) {
         ++lost_frames_;
-        velocity_.setZero();
+        filter_.start(filter_.odom_from_camera());
         last_pyramid_ = {};
-        if (lost_frames_ >= options_.max_lost_frames) result.keyframe = begin(view, odom_from_camera_);
+        if (lost_frames_ >= options_.max_lost_frames)
+            result.keyframe = begin(view, filter_.odom_from_camera());
         if (!result.keyframe) return result;
         estimate.status = TrackingStatus::kTracked;
-        estimate.odom_from_camera = odom_from_camera_;
+        estimate.odom_from_camera = filter_.odom_from_camera();
         estimate.keyframe_id = result.keyframe->id;
         return result;
     }
+    if (knows_velocity(view.utime) && !located->relocalised)
+        readout_.learn(view.readout_s, located->track.alignment);
+    follow(view, *located);
     estimate.status = located->track.degenerate ? TrackingStatus::kDegenerate : TrackingStatus::kTracked;
     estimate.odom_from_camera = located->odom_from_camera();
     estimate.keyframe_id = located->keyframe_id;
@@ -203,7 +222,6 @@ OdometryResult Odometry::State::process(const OdometryFrame& frame) {
     estimate.features = located->track.tried;
     estimate.inliers = located->track.inliers;
     estimate.residual_px = located->track.alignment.residual_px;
-    follow(view, *located);
     if (wants_keyframe(view, *located))
         result.keyframe = change_keyframe(view, *located);
     else
@@ -228,7 +246,7 @@ std::optional<Located> Odometry::State::locate(const PreparedFrame& view) {
         track = track_points(options_, current(), view, guess, search);
         if (!track) {
             guess = coarse_guess(options_, current(), view, guess, last_dense_,
-                                 current().odom_from_keyframe.inverse() * odom_from_camera_);
+                                 current().odom_from_keyframe.inverse() * filter_.odom_from_camera());
             track = second_chances(view, guess);
         }
         if (!track)
@@ -257,7 +275,8 @@ std::optional<Track> Odometry::State::track_geometry(const PreparedFrame& view, 
     const bool fresh = elapsed < kStillPredicted;
     const Guess still = predict(view.utime, current(), false);
     Guess carried_on = still;
-    carried_on.camera_from_keyframe = pose_from_twist(elapsed * velocity_) * still.camera_from_keyframe;
+    carried_on.camera_from_keyframe =
+        pose_from_twist(elapsed * filter_.velocity()) * still.camera_from_keyframe;
     std::optional<Track> best;
     for (const Guess& start : {guess, still, carried_on}) {
         std::optional<Track> track = track_surface(options_, current(), view, start);
@@ -290,7 +309,7 @@ std::optional<Located> Odometry::State::locate_by_paper(const PreparedFrame& vie
     Track track;
     track.alignment = align(alignment, *motion);
     if (!track.alignment.converged || track.alignment.inliers < options_.min_inliers) return std::nullopt;
-    const Pose last_from_keyframe = odom_from_camera_.inverse() * current().odom_from_keyframe;
+    const Pose last_from_keyframe = filter_.odom_from_camera().inverse() * current().odom_from_keyframe;
     track.alignment.camera_from_keyframe = track.alignment.camera_from_keyframe * last_from_keyframe;
     track.tried = static_cast<int>(terms.size());
     track.inliers = track.alignment.inliers;
@@ -309,7 +328,7 @@ std::vector<Feature> Odometry::State::planar_features(const PreparedFrame& view)
 /// True when the camera can have come there since the last pose.
 bool Odometry::State::is_plausible(const Pose& odom_from_camera, std::int64_t utime) const {
     const double elapsed = seconds(utime - pose_utime_), reach = kReach + options_.acceleration * elapsed;
-    const Pose moved = odom_from_camera_.inverse() * odom_from_camera;
+    const Pose moved = filter_.odom_from_camera().inverse() * odom_from_camera;
     return moved.translation().norm() < reach * (1 + elapsed) &&
            rotation_angle(moved) < reach * (1 + elapsed);
 }
@@ -359,15 +378,13 @@ std::optional<Located> Odometry::State::relocalise(const PreparedFrame& view) {
     return std::nullopt;
 }
 
-/// Takes over the pose and the motion since the last one.
-void Odometry::State::follow(const PreparedFrame& view, const Located& located) {
-    const Pose odom_from_camera = located.odom_from_camera();
+/// Takes over the pose, without its jitter, and the motion since the last one.
+void Odometry::State::follow(const PreparedFrame& view, Located& located) {
     const double elapsed = seconds(view.utime - pose_utime_);
-    if (lost_frames_ > 0 || located.relocalised)
-        velocity_.setZero();
-    else if (elapsed > 0)
-        velocity_ = twist_from_pose(odom_from_camera.inverse() * odom_from_camera_) / elapsed;
-    odom_from_camera_ = odom_from_camera;
+    if (lost_frames_ > 0 || located.relocalised || !(elapsed > 0) || options_.method == "paper")
+        filter_.start(located.odom_from_camera());
+    else
+        located.move_to(filter_.update(located.odom_from_camera(), elapsed));
     pose_utime_ = view.utime;
     lost_frames_ = 0;
     last_dense_ = make_dense_reference(view.pyramid, *view.depth, *view.camera);
@@ -422,7 +439,7 @@ std::optional<std::size_t> Odometry::State::other_keyframe(const PreparedFrame& 
     Guess guess;
     guess.camera_from_keyframe = odom_from_camera.inverse() * keyframe.odom_from_keyframe;
     guess.information = Matrix6d::Identity() / (0.02 * 0.02);
-    guess.velocity = velocity_;
+    guess.velocity = filter_.velocity();
     std::vector<cv::Point2f> pixels;
     for (const TrackPoint& point : keyframe.points) pixels.push_back(point.pixel);
     FlowSearch search{&keyframe.pyramid, &pixels, nullptr, options_.flow_levels};
@@ -463,7 +480,7 @@ std::optional<Keyframe> Odometry::State::change_keyframe(PreparedFrame& view, co
 
 /// A keyframe without an edge. Nothing when the frame has neither texture nor surface.
 std::optional<Keyframe> Odometry::State::begin(PreparedFrame& view, const Pose& odom_from_camera) {
-    velocity_.setZero();
+    filter_.start(odom_from_camera);
     lost_frames_ = 0;
     pose_utime_ = view.utime;
     last_dense_ = make_dense_reference(view.pyramid, *view.depth, *view.camera);
@@ -481,10 +498,12 @@ LocalKeyframe Odometry::State::make_local(const PreparedFrame& view) const {
     LocalKeyframe local;
     local.utime = view.utime;
     local.regions = view.regions;
-    local.surface = Surface(*view.depth, view.camera->color, *view.camera, options_.surface_cell_px);
+    const Twist& velocity = filter_.velocity();
+    local.surface = Surface(*view.depth, view.camera->color, *view.camera, options_.surface_cell_px,
+                            view.readout_s * velocity);
     if (!view.gray) return local;
     const PinholeCamera& camera = view.camera->color;
-    const Pose depth_from_color_time = pose_from_twist(-last_color_offset_s_ * velocity_);
+    const Pose depth_from_color_time = pose_from_twist(-last_color_offset_s_ * filter_.velocity());
     const CornerOptions corners{options_.max_points, options_.cell_px, options_.corner_threshold,
                                 options_.max_depth_spread};
     for (const cv::Point2f& pixel : select_corners(*view.gray, *view.depth, *view.camera, corners)) {
@@ -496,7 +515,9 @@ LocalKeyframe Odometry::State::make_local(const PreparedFrame& view) const {
         const Eigen::Vector2d depth_pixel = camera.project(p);
         z = sound_depth(*view.depth, *view.camera, depth_pixel, options_.max_depth_spread);
         if (z == 0) continue;
-        TrackPoint point{pixel, camera.unproject(depth_pixel.x(), depth_pixel.y(), z), 0, -1};
+        TrackPoint point;
+        point.pixel = pixel;
+        point.point = camera.unproject(depth_pixel.x(), depth_pixel.y(), z);
         const double sigma = view.camera->noise.sigma(z);
         point.inverse_depth_sigma = options_.depth_sigma_scale * sigma / (z * z);
         point.region = region_of(view.regions, point.point, sigma);
@@ -505,6 +526,9 @@ LocalKeyframe Odometry::State::make_local(const PreparedFrame& view) const {
                 regularised(view.regions[static_cast<std::size_t>(point.region)].plane, point.point);
             point.inverse_depth_sigma *= 0.5;
         }
+        const Twist early = -row_share(camera, depth_pixel.y()) * velocity;
+        point.per_readout = early.head<3>() + early.tail<3>().cross(point.point);
+        point.point = moved(view.readout_s * early, point.point);
         local.points.push_back(point);
     }
     local.pyramid = make_flow_pyramid(*view.gray, options_.flow_wide_levels, options_.flow_window_px, true);

@@ -47,13 +47,21 @@ std::vector<SurfaceSample> sample_depth(const DepthImage& depth, const PinholeCa
         for (int u = stride_px / 2; u < depth.width; u += stride_px) {
             const double z = info.metres(row[u]);
             if (!is_valid_depth(row[u]) || !is_trusted(z, info)) continue;
-            samples.push_back({camera.unproject(u, v, z), info.noise.sigma(z)});
+            samples.push_back({camera.unproject(u, v, z), info.noise.sigma(z), row_share(camera, v)});
         }
     }
     return samples;
 }
 
-Surface::Surface(const DepthImage& depth, const PinholeCamera& camera, const CameraInfo& info, int cell_px)
+std::vector<SurfaceSample> without_shutter(std::vector<SurfaceSample> samples, const Twist& over_readout) {
+    if (over_readout.isZero(0)) return samples;
+    for (SurfaceSample& sample : samples)
+        sample.point = moved(-sample.row_share * over_readout, sample.point);
+    return samples;
+}
+
+Surface::Surface(const DepthImage& depth, const PinholeCamera& camera, const CameraInfo& info, int cell_px,
+                 const Twist& over_readout)
     : cell_px_(cell_px), columns_(depth.width / cell_px), rows_(depth.height / cell_px) {
     planes_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
     const int needed = cell_px * cell_px / 4 * 3 / 4;  // of every other pixel of every other row
@@ -82,7 +90,10 @@ Surface::Surface(const DepthImage& depth, const PinholeCamera& camera, const Cam
             sums.left.triangularView<Eigen::StrictlyLower>() = sums.left.transpose();
             Plane& plane = planes_[static_cast<std::size_t>(row * columns_ + column)];
             plane = fit_cell(sums, column * cell_px + centre, row * cell_px + centre, camera, info);
-            count_ += plane.d > 0;
+            if (!(plane.d > 0)) continue;
+            ++count_;
+            const double late = row_share(camera, row * cell_px + centre);
+            plane = pose_from_twist(-late * over_readout) * plane;
         }
     }
 }

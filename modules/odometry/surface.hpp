@@ -15,18 +15,24 @@ namespace planemap {
 struct SurfaceSample {
     Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< camera frame, metres
     double sigma = 0;                                 ///< of its depth, metres
+    double row_share = 0;                             ///< see row_share()
 };
 
 /// Every stride-th valid reading, rows and columns. `camera` is the camera the depth image is registered to.
 std::vector<SurfaceSample> sample_depth(const DepthImage& depth, const PinholeCamera& camera,
                                         const CameraInfo& info, int stride_px);
 
+/// The samples where they were at the image's time; the camera moves by `over_readout` while it is read out.
+std::vector<SurfaceSample> without_shutter(std::vector<SurfaceSample> samples, const Twist& over_readout);
+
 /// The surface seen in a depth image: one plane for each square cell whose readings lie on one.
 /// A plane is linear in inverse depth, 1/z = a u + b v + c, so a cell is a 3x3 least-squares fit.
 class Surface {
   public:
     Surface() = default;
-    Surface(const DepthImage& depth, const PinholeCamera& camera, const CameraInfo& info, int cell_px);
+    /// The camera moves by `over_readout` while the image is read out; the planes are those of its time.
+    Surface(const DepthImage& depth, const PinholeCamera& camera, const CameraInfo& info, int cell_px,
+            const Twist& over_readout = Twist::Zero());
 
     /// Number of cells with a plane.
     int cells() const { return count_; }

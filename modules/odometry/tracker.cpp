@@ -31,6 +31,7 @@ std::vector<PointTerm> make_terms(const OdometryOptions& options, const LocalKey
     for (const std::size_t i : found) {
         PointTerm term;
         term.point = keyframe.points[i].point;
+        term.point_per_readout = keyframe.points[i].per_readout;
         term.pixel = {pixels[i].x, pixels[i].y};
         term.pixel_sigma = options.pixel_sigma_px;
         Eigen::Vector2d depth_pixel = term.pixel;
@@ -71,6 +72,7 @@ Alignment make_alignment(const OdometryOptions& options, const PreparedFrame& vi
     alignment.velocity = guess.velocity;
     alignment.color_offset_s = view.color_offset_s;
     alignment.color_offset_sigma_s = options.color_jitter_s;
+    alignment.readout_s = view.readout_s;
     alignment.loss_scale = options.loss_scale;
     alignment.inlier_sigmas = options.inlier_sigmas;
     alignment.quadratics.push_back(guess_term(guess));
@@ -97,10 +99,12 @@ AlignmentResult align_robustly(const OdometryOptions& options, const Alignment& 
 }
 
 std::vector<QuadraticTerm> geometry_terms(const OdometryOptions& options, const LocalKeyframe& keyframe,
-                                          const PreparedFrame& view, const Pose& camera_from_keyframe) {
+                                          const PreparedFrame& view, const Pose& camera_from_keyframe,
+                                          const Twist& velocity) {
     std::vector<QuadraticTerm> terms;
     if (options.surface_weight > 0)
-        terms.push_back(match_surface(keyframe.surface, view.camera->color, view.samples,
+        terms.push_back(match_surface(keyframe.surface, view.camera->color,
+                                      without_shutter(view.samples, view.readout_s * velocity),
                                       camera_from_keyframe, options.surface_gate_m, options.surface_weight)
                             .term);
     if (options.plane_points > 0)
@@ -112,8 +116,8 @@ std::vector<QuadraticTerm> geometry_terms(const OdometryOptions& options, const 
 }  // namespace
 
 Twist Guess::velocity_at(const Pose& camera_from_keyframe) const {
-    if (elapsed_s <= 0) return velocity;
-    return twist_from_pose(camera_from_keyframe * last_from_keyframe.inverse()) / elapsed_s;
+    return velocity + velocity_gain.cwiseProduct(
+                          twist_from_pose(camera_from_keyframe * predicted_from_keyframe.inverse()));
 }
 
 QuadraticTerm match_planes(std::span<const PlanarRegion> keyframe_regions,
@@ -166,7 +170,7 @@ std::optional<Track> align_points(const OdometryOptions& options, const LocalKey
 
     alignment.velocity = guess.velocity_at(result.camera_from_keyframe);
     const std::vector<QuadraticTerm> geometry =
-        geometry_terms(options, keyframe, view, result.camera_from_keyframe);
+        geometry_terms(options, keyframe, view, result.camera_from_keyframe, alignment.velocity);
     alignment.quadratics.insert(alignment.quadratics.end(), geometry.begin(), geometry.end());
     const AlignmentResult joint = align(alignment, result.camera_from_keyframe);
     if (is_supported(options, joint, terms.size()) && joint.inliers > 0.8 * result.inliers) result = joint;
@@ -221,8 +225,9 @@ std::optional<Track> track_surface(const OdometryOptions& options, const LocalKe
     for (int i = 0; i < 2 * kSurfaceSteps; ++i) {
         // Wide at first, then as narrow as the noise allows.
         const double gate = options.surface_gate_m * (i < kSurfaceSteps ? 3 : 1);
-        match = match_surface(keyframe.surface, view.camera->color, view.samples, pose, gate,
-                              options.surface_weight);
+        match = match_surface(keyframe.surface, view.camera->color,
+                              without_shutter(view.samples, view.readout_s * guess.velocity_at(pose)), pose,
+                              gate, options.surface_weight);
         Alignment alignment = make_alignment(options, view, guess);
         alignment.quadratics.push_back(match.term);
         alignment.quadratics.push_back(

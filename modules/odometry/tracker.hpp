@@ -19,6 +19,7 @@ namespace planemap {
 struct PreparedFrame {
     std::int64_t utime = 0;     ///< depth time, microseconds
     double color_offset_s = 0;  ///< colour time minus depth time
+    double readout_s = 0;       ///< see Alignment
     const GrayImage* gray = nullptr;
     const DepthImage* depth = nullptr;
     const CameraInfo* camera = nullptr;
@@ -31,8 +32,9 @@ struct PreparedFrame {
 struct TrackPoint {
     cv::Point2f pixel;
     Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< keyframe camera frame at its depth time, metres
-    double inverse_depth_sigma = 0;                   ///< 1/m
-    int region = -1;                                  ///< region it was regularised to; -1: none
+    Eigen::Vector3d per_readout = Eigen::Vector3d::Zero();  ///< see PointTerm::point_per_readout
+    double inverse_depth_sigma = 0;                         ///< 1/m
+    int region = -1;                                        ///< region it was regularised to; -1: none
 };
 
 /// A keyframe that frames are tracked against.
@@ -49,10 +51,10 @@ struct LocalKeyframe {
 /// What is known of a frame's pose before it is tracked.
 struct Guess {
     Pose camera_from_keyframe = Pose::Identity();
-    Matrix6d information = Matrix6d::Zero();     ///< of the guess
-    Twist velocity = Twist::Zero();              ///< see Alignment::velocity
-    Pose last_from_keyframe = Pose::Identity();  ///< camera_from_keyframe of the last pose
-    double elapsed_s = 0;                        ///< since the last pose; 0: the velocity stays as guessed
+    Matrix6d information = Matrix6d::Zero();  ///< of the guess
+    Twist velocity = Twist::Zero();           ///< see Alignment::velocity
+    Twist velocity_gain = Twist::Zero();      ///< see MotionFilter; zero: the velocity stays as guessed
+    Pose predicted_from_keyframe = Pose::Identity();  ///< where that velocity led to
 
     /// The velocity if the camera is at camera_from_keyframe.
     Twist velocity_at(const Pose& camera_from_keyframe) const;

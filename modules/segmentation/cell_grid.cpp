@@ -63,7 +63,8 @@ Candidate CellGrid::candidate(const InverseDepthPlane& plane, std::uint16_t labe
 std::uint16_t CellGrid::depth_at(Place cell, const Candidate& candidate) const {
     const double line = candidate.start + candidate.right * (cell.x * kCellPx + 3.5) +
                         candidate.down * (cell.y * kCellPx + 3.5);
-    return static_cast<std::uint16_t>(candidate.d / std::max(line, candidate.d / 65534));
+    const double reading = candidate.d / line;
+    return line > 0 && reading < 65534 ? static_cast<std::uint16_t>(reading) : std::uint16_t{65534};
 }
 
 void CellGrid::label(Place cell, const BorderBand& band, std::span<const Candidate> candidates,

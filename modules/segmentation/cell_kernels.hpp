@@ -30,7 +30,6 @@ struct alignas(64) Cell {
     float per_steepness = 0;       ///< 1 / steepness of its plane: its distance to the sensor, metres
 
     bool planar() const { return reach >= 0; }
-    float z() const { return 1 / w; }
 };
 
 /// How cells are fitted and judged; see CellOptions.
@@ -59,9 +58,8 @@ struct BorderBand {
     DepthNoise noise;
 };
 
-/// A plane that pixels may belong to. A pixel's point lies |d - line raw| from it, with line = start + right
-/// u
-/// + down v in metres per raw unit.
+/// A plane that pixels may belong to. A pixel's point lies |d - line raw| from it, with line = start +
+/// right u + down v in metres per raw unit.
 struct Candidate {
     double start = 0, right = 0, down = 0;
     double d = 0;  ///< distance of the plane to the sensor, metres

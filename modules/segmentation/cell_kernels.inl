@@ -331,8 +331,10 @@ struct Line {
             static_cast<float>(band.thickness_sigmas * band.noise.base_m) +
             static_cast<float>(band.thickness_sigmas * band.noise.quadratic_per_m) * off * off;
         const auto thickness = static_cast<float>(band.thickness_m);
-        // A plane that is not in front of the camera here takes no pixel.
-        limit = splat(!(centre > 0) ? 0.0f : sigmas > thickness ? sigmas : thickness);
+        // A plane that is not in front of the camera here takes no pixel; nor is there one to take if no
+        // reading is valid, which within() cannot tell.
+        const bool none = !(centre > 0) || rules.high < rules.low;
+        limit = splat(none ? 0.0f : sigmas > thickness ? sigmas : thickness);
         label = splat(candidate.label);
     }
 

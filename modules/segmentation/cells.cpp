@@ -210,7 +210,7 @@ void add_unbiased(PointSums& to, PointSums part, double relative2) {
 }
 
 void CellSegmenter::add_sums(const DepthNoise& noise, std::uint16_t label, const PointSums& part, int cells) {
-    const double z = part.zz / part.z, sigma = std::clamp(noise.sigma(z), 1e-6, 0.1 * z);
+    const double z = part.zz / part.z, sigma = std::min(std::max(1e-6, noise.sigma(z)), 0.1 * z);
     RegionSums& region = region_sums_[label - 1];
     region.points += part;
     region.cells += cells;

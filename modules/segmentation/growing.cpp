@@ -112,7 +112,10 @@ void RegionGrower::rank_seeds(const CellMap& map) {
         const auto missing = static_cast<float>(4 - std::popcount(links_[i]));
         const float points =
             cell.mse / (sigma_w * sigma_w) + turn_[i] / (1 - cell.cos_limit) + 0.5f * missing;
-        rank_[i] = static_cast<std::uint8_t>(std::min(kRanksPerPoint * points, kRanks - 1.0f));
+        // Without noise, or with limits of no angle, points are 0 / 0 or below 0.
+        constexpr float kLast = kRanks - 1;
+        const float rank = kRanksPerPoint * points;
+        rank_[i] = static_cast<std::uint8_t>(rank < kLast ? std::max(rank, 0.0f) : kLast);
         ++count[rank_[i] + 1];
     }
     for (int k = 0; k < kRanks; ++k) count[k + 1] += count[k];
@@ -348,8 +351,7 @@ void RegionGrower::find_smooth_borders(const CellMap& map) {
                 const Cell& other = map.cells[j];
                 if (other.sigma * other.w > surest) continue;
                 const Target& target = targets_[label - 1];
-                const float to_region = target.nx * other.nx + target.ny * other.ny + target.nz * other.nz;
-                if (to_region < turned && cosine(map.cells[i], other) > similar) ++border.smooth;
+                if (target.cosine(other) < turned && cosine(map.cells[i], other) > similar) ++border.smooth;
             }
         }
     }

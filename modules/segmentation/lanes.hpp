@@ -290,7 +290,7 @@ inline Float8 masked(const Float8& x, const Int8& mask) {
 inline Float8 absolute(const Float8& x) {
     return bits_as_float(bits_as_int(x) & splat(0x7fffffff));
 }
-/// All ones where a value lies within low and high, else 0.
+/// All ones where a value lies within low and high, else 0. Precondition: low <= high.
 inline Short8 within(const Short8& x, const Short8& low, const Short8& high) {
     return equal(smaller(larger(x, low), high), x);
 }

@@ -115,6 +115,7 @@ DepthRange::DepthRange(const CameraInfo& camera) {
 void ShapeTracer::recycle(std::vector<PlanarRegion>& regions) {
     for (PlanarRegion& region : regions) {
         std::vector<Ring>& rings = region.outline.rings;
+        if (rings.capacity() == 0) continue;
         for (Ring& ring : rings) spare_rings_.push_back(std::move(ring));
         rings.clear();
         spare_lists_.push_back(std::move(rings));
@@ -233,6 +234,8 @@ void ShapeTracer::trace_rings(std::vector<PlanarRegion>& regions) {
 void ShapeTracer::shape(const CameraInfo& camera, PlanarRegion& region) {
     const Eigen::Matrix3d axes = principal_axes(region.plane, region.moments);
     const Eigen::Vector2d last(camera.depth.width - 0.5, camera.depth.height - 0.5);
+    // The range that is trusted may be any; no reading is farther than the largest.
+    const double farthest_m = 2 * std::min(camera.depth_max_m, camera.metres(65534));
     corners_.clear();
     for (const Ring& ring : region.outline.rings) {
         for (const Eigen::Vector2d& corner : ring) {
@@ -240,8 +243,7 @@ void ShapeTracer::shape(const CameraInfo& camera, PlanarRegion& region) {
             // and the first block is one of 0 that is not in the image.
             const Eigen::Vector2d pixel =
                 (corner.array() - 1).matrix() * block_px_ - Eigen::Vector2d(0.5, 0.5);
-            corners_.push_back(
-                ray_on_plane(camera.depth, region.plane, pixel.cwiseMin(last), 2 * camera.depth_max_m));
+            corners_.push_back(ray_on_plane(camera.depth, region.plane, pixel.cwiseMin(last), farthest_m));
         }
     }
     if (corners_.empty()) corners_.push_back(region.plane.project(region.moments.mean()));

@@ -117,5 +117,13 @@ TEST(Pose, InterpolationEndsAndMiddle) {
     }
 }
 
+TEST(PoseTest, MovedIsThePoseOfASmallTwist) {
+    Twist twist;
+    twist << 0.02, -0.01, 0.03, 0.02, 0.03, -0.01;
+    const Eigen::Vector3d p(0.5, -0.3, 2);
+    EXPECT_LT((moved(twist, p) - pose_from_twist(twist) * p).norm(), 5e-5);
+    EXPECT_EQ(moved(Twist::Zero(), p), p);
+}
+
 }  // namespace
 }  // namespace planemap

@@ -37,12 +37,14 @@ TEST(PointResidual, JacobianMatchesDifferences) {
         const Pose pose = some_motion();
         Eigen::Vector3d residual;
         Eigen::Matrix<double, 3, 6> jacobian;
-        ASSERT_TRUE(point_residual(kCamera, term, pose, residual, &jacobian));
+        ASSERT_TRUE(point_residual(kCamera, term, pose * term.point, residual, &jacobian));
         for (int i = 0; i < 6; ++i) {
             const double step = 1e-6;
             Eigen::Vector3d up, down;
-            ASSERT_TRUE(point_residual(kCamera, term, pose_from_twist(step * Twist::Unit(i)) * pose, up));
-            ASSERT_TRUE(point_residual(kCamera, term, pose_from_twist(-step * Twist::Unit(i)) * pose, down));
+            ASSERT_TRUE(point_residual(kCamera, term,
+                                       pose_from_twist(step * Twist::Unit(i)) * pose * term.point, up));
+            ASSERT_TRUE(point_residual(kCamera, term,
+                                       pose_from_twist(-step * Twist::Unit(i)) * pose * term.point, down));
             const Eigen::Vector3d numeric = (up - down) / (2 * step);
             EXPECT_LT((numeric - jacobian.col(i)).norm(), 1e-4 * (1 + numeric.norm())) << "column " << i;
         }
@@ -53,7 +55,7 @@ TEST(PointResidual, NothingBehindTheCamera) {
     PointTerm term;
     term.point = {0, 0, -1};
     Eigen::Vector3d residual;
-    EXPECT_FALSE(point_residual(kCamera, term, Pose::Identity(), residual));
+    EXPECT_FALSE(point_residual(kCamera, term, Pose::Identity() * term.point, residual));
 }
 
 TEST(Align, FindsTheMotionDespiteOutliers) {
@@ -82,6 +84,69 @@ TEST(Align, TellsTheTimeOffsetWhenDepthSaysWhereTheCameraIs) {
     const AlignmentResult result = align(alignment, some_motion());
     EXPECT_NEAR(result.color_offset_s, offset, 1e-3);
     EXPECT_LT(twist_from_pose(result.camera_from_keyframe * some_motion().inverse()).norm(), 1e-3);
+}
+
+/// Points as a rolling shutter shows them to a camera at `pose` that moves with `velocity`.
+std::vector<PointTerm> rolling_points(const Pose& pose, const Twist& velocity, double readout_s, int count) {
+    std::vector<PointTerm> terms = seen_points(pose, count, 9);
+    for (PointTerm& term : terms) {
+        for (int i = 0; i < 5; ++i) {
+            const double late = readout_s * row_share(kCamera, term.pixel.y());
+            const Eigen::Vector3d p = pose_from_twist(late * velocity) * pose * term.point;
+            term.pixel = kCamera.project(p);
+            term.inverse_depth = 1 / p.z();
+        }
+    }
+    return terms;
+}
+
+TEST(Align, ARollingShutterIsUndone) {
+    Twist velocity;
+    velocity << 0.4, 0.1, 0, 0.5, 1.5, -0.3;
+    const std::vector<PointTerm> terms = rolling_points(some_motion(), velocity, 0.03, 100);
+    Alignment alignment;
+    alignment.camera = kCamera;
+    alignment.points = terms;
+    alignment.velocity = velocity;
+    alignment.color_offset_sigma_s = 1e-4;
+    const auto error = [&] {
+        const AlignmentResult result = align(alignment, Pose::Identity());
+        return twist_from_pose(result.camera_from_keyframe * some_motion().inverse()).norm();
+    };
+    const double rolling = error();
+    alignment.readout_s = 0.03;
+    EXPECT_LT(error(), 1e-3);
+    EXPECT_LT(error(), 0.1 * rolling);
+}
+
+TEST(Align, TellsTheReadout) {
+    Twist velocity;
+    velocity << 0, 0, 0, 0.5, 1, -0.3;
+    for (const double readout_s : {0.0, 0.02, -0.02}) {
+        const std::vector<PointTerm> terms = rolling_points(some_motion(), velocity, readout_s, 200);
+        Alignment alignment;
+        alignment.camera = kCamera;
+        alignment.points = terms;
+        alignment.velocity = velocity;
+        double estimate = 0;
+        for (int i = 0; i < 6; ++i) {
+            alignment.readout_s = estimate;
+            const AlignmentResult result = align(alignment, some_motion());
+            ASSERT_GT(result.readout_information, 0);
+            estimate -= result.readout_gradient / result.readout_information;
+        }
+        EXPECT_NEAR(estimate, readout_s, 2e-3);
+    }
+}
+
+TEST(Align, ACameraAtRestSaysNothingOfTheReadout) {
+    const std::vector<PointTerm> terms = seen_points(some_motion(), 100, 5);
+    Alignment alignment;
+    alignment.camera = kCamera;
+    alignment.points = terms;
+    const AlignmentResult result = align(alignment, some_motion());
+    EXPECT_EQ(result.readout_information, 0);
+    EXPECT_EQ(result.readout_gradient, 0);
 }
 
 TEST(Align, WithoutAnythingStaysAtTheGuess) {

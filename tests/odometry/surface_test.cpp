@@ -64,5 +64,18 @@ TEST(Surface, OneWallSaysNothingAlongItself) {
     EXPECT_LT(information(5, 5), 1e-3 * information(3, 3));
 }
 
+TEST(SamplesTest, AreWhereTheyWereAtTheImagesTime) {
+    Twist over_readout;
+    over_readout << 0.01, 0, 0, 0, 0.02, 0;
+    const Eigen::Vector3d p(0.1, 0.2, 2);
+    std::vector<SurfaceSample> samples;
+    for (const double share : {-0.5, 0.0, 0.4})
+        samples.push_back({pose_from_twist(share * over_readout) * p, 0.002, share});
+    for (const SurfaceSample& sample : without_shutter(samples, over_readout))
+        EXPECT_LT((sample.point - p).norm(), 1e-4);
+    for (std::size_t i = 0; i < samples.size(); ++i)
+        EXPECT_EQ(without_shutter(samples, Twist::Zero())[i].point, samples[i].point);
+}
+
 }  // namespace
 }  // namespace planemap

@@ -213,6 +213,65 @@ TEST_P(Kernels, GiveTheSameBits) {
     EXPECT_EQ(std::memcmp(grid.sums().data(), portable.sums().data(), bytes * sizeof(PointSums)), 0);
 }
 
+TEST_P(Kernels, AnEmptyRangeHoldsNothing) {
+    const CameraInfo camera = scene::camera(64, 48);
+    for (const auto& [low, high] : std::vector<std::pair<int, int>>{{1, 0}, {501, 500}, {65534, 1}}) {
+        CellRules rules = rules_for(camera);
+        rules.low = static_cast<std::uint16_t>(low);
+        rules.high = static_cast<std::uint16_t>(high);
+        for (const int raw : {0, 1, 499, 500, 501, 65534, 65535}) {
+            const DepthImage depth(64, 48, static_cast<std::uint16_t>(raw));
+            CellGrid grid(*GetParam());
+            grid.reset(depth, rules);
+            grid.fit();
+            for (int cell = 0; cell < grid.size(); ++cell) {
+                EXPECT_EQ(grid.sums()[cell].n, 0);
+                EXPECT_FALSE(grid.cells()[cell].planar());
+            }
+            const double z = std::max(raw, 1) * 1e-3;
+            std::vector<Candidate> planes{grid.candidate({0, 0, 1 / z}, 1)};
+            for (int count = 1; count <= 2; ++count) {
+                std::array<std::uint8_t, 2> pixels{};
+                grid.label({0, 0}, {0.015, 3, camera.noise}, planes, pixels.data());
+                EXPECT_EQ(pixels[0], 0) << low << " to " << high << ", " << raw;
+                planes.push_back(grid.candidate({0, 0, 2 / z}, 2));
+            }
+        }
+    }
+}
+
+TEST_P(Kernels, RangeIsInclusive) {
+    const CameraInfo camera = scene::camera(64, 48);
+    CellRules rules = rules_for(camera);
+    rules.low = 500;
+    rules.high = 600;
+    for (const int raw : {499, 500, 600, 601}) {
+        const DepthImage depth(64, 48, static_cast<std::uint16_t>(raw));
+        CellGrid grid(*GetParam());
+        grid.reset(depth, rules);
+        grid.fit();
+        const int expected = raw >= 500 && raw <= 600 ? 64 : 0;
+        EXPECT_EQ(grid.sums()[0].n, expected) << raw;
+        std::uint8_t pixels = 1;
+        grid.label({0, 0}, {0.015, 3, camera.noise},
+                   std::vector<Candidate>{grid.candidate({0, 0, 1000.0 / raw}, 1)}, &pixels);
+        EXPECT_EQ(pixels, expected) << raw;
+    }
+}
+
+TEST(CellGridTest, DepthOfAnyPlaneIsAReading) {
+    const CameraInfo camera = scene::camera(64, 48);
+    const DepthImage depth(64, 48, 1000);
+    CellGrid grid(best_cell_kernels());
+    grid.reset(depth, rules_for(camera));
+    EXPECT_EQ(grid.depth_at({3, 2}, grid.candidate({0, 0, 1 / 1.5}, 1)), 1500);
+    // Behind the camera, beyond all readings, not a number: anything that a reading can be.
+    for (const double bad : {-1.0, 0.0, 1e-9, 1e9, 1e300, std::nan("")}) {
+        EXPECT_LE(grid.depth_at({3, 2}, grid.candidate({bad, 0, bad}, 1)), 65534) << bad;
+        EXPECT_LE(grid.depth_at({3, 2}, {bad, 0, 0, 1, 1}), 65534) << bad;
+    }
+}
+
 TEST(CellGridTest, NothingValidIsNothingPlanar) {
     const CameraInfo camera = scene::camera(40, 30);
     const DepthImage depth(40, 30, 65535);

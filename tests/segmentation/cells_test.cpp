@@ -3,8 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <random>
+#include <utility>
+#include <vector>
 
 #include "segmentation/scene.hpp"
 
@@ -179,6 +183,143 @@ TEST(CellsTest, PlaneIsWeightedByNoiseButMomentsAreNot) {
         unweighted += angle_between(fit_plane(out.regions[0].moments).plane.normal, wall.normal);
     }
     EXPECT_LT(weighted, unweighted);
+}
+
+/// Walls, a box in front with a sloping top, a pillar, holes and dust.
+DepthImage crowded(const CameraInfo& camera, std::uint64_t seed) {
+    const auto box = [](const Eigen::Vector3d& p) { return std::abs(p.x()) < 0.35 && p.y() > 0.1; };
+    const auto shelf = [](const Eigen::Vector3d& p) { return p.x() > 0.2 && std::abs(p.y() + 0.3) < 0.15; };
+    DepthImage depth = scene::render(
+        camera,
+        {scene::plane(scene::tilted(0.1, 0.8, {0, 0, 2.5})),
+         scene::plane(scene::tilted(0.1, -0.7, {0, 0, 2.5})),
+         scene::plane(scene::tilted(0.4, 0.1, {0, 0.4, 1.5}), box),
+         scene::plane(scene::tilted(0, 0, {0, 0, 1.7}), shelf), scene::cylinder(-0.5, 1.6, 0.12)},
+        true, seed);
+    std::mt19937_64 random(seed);
+    for (std::uint16_t& raw : depth.pixels) {
+        if (random() % 40 == 0) raw = static_cast<std::uint16_t>(random() % 2 == 0 ? 0 : random());
+    }
+    for (int v = depth.height / 8; v < depth.height / 4; ++v)
+        std::fill_n(depth.row(v) + depth.width / 3, depth.width / 6, std::uint16_t{65535});
+    return depth;
+}
+
+void expect_same_bits(const Segmentation& a, const Segmentation& b) {
+    ASSERT_EQ(a.labels.width, b.labels.width);
+    ASSERT_EQ(a.labels.pixels, b.labels.pixels);
+    ASSERT_EQ(a.regions.size(), b.regions.size());
+    for (std::size_t i = 0; i < a.regions.size(); ++i) {
+        const PlanarRegion &r = a.regions[i], &s = b.regions[i];
+        EXPECT_EQ(r.plane.normal, s.plane.normal);
+        EXPECT_EQ(r.plane.d, s.plane.d);
+        EXPECT_EQ(r.moments.count, s.moments.count);
+        EXPECT_EQ(r.moments.sum, s.moments.sum);
+        EXPECT_EQ(r.moments.scatter, s.moments.scatter);
+        EXPECT_EQ(r.rms, s.rms);
+        EXPECT_EQ(r.box.frame_from_box.matrix(), s.box.frame_from_box.matrix());
+        EXPECT_EQ(r.box.half_extents, s.box.half_extents);
+        EXPECT_EQ(r.outline.rings, s.outline.rings);
+    }
+}
+
+TEST(CellsTest, AllKernelsGiveTheVerySameRegions) {
+    const CellKernels* avx2 = avx2_cell_kernels();
+    for (const auto& [width, height] : std::vector<std::pair<int, int>>{
+             {640, 480}, {641, 479}, {320, 240}, {1280, 720}, {333, 77}, {9, 9}, {8, 8}, {1, 1}}) {
+        const CameraInfo camera = scene::camera(width, height);
+        for (const std::uint64_t seed : {1u, 2u}) {
+            const DepthImage depth = crowded(camera, seed);
+            Segmentation portable, baseline, fast;
+            make_cell_segmenter(CellOptions{}, portable_cell_kernels())->segment(depth, camera, portable);
+            make_cell_segmenter(CellOptions{}, baseline_cell_kernels())->segment(depth, camera, baseline);
+            expect_same_bits(portable, baseline);
+            if (width >= 320) {
+                EXPECT_GE(portable.regions.size(), width == 333 ? 1u : 3u) << width;
+            }
+            if (avx2 == nullptr) continue;
+            make_cell_segmenter(CellOptions{}, *avx2)->segment(depth, camera, fast);
+            expect_same_bits(portable, fast);
+        }
+    }
+}
+
+TEST(CellsTest, AnImageTakesNothingFromTheOneBefore) {
+    // Sizes, and with them paddings, in turn.
+    const auto segmenter = make_cell_segmenter(CellOptions{});
+    Segmentation reused;
+    for (const auto& [width, height] :
+         std::vector<std::pair<int, int>>{{640, 480}, {9, 9}, {641, 479}, {1, 1}, {320, 240}, {641, 479}}) {
+        const CameraInfo camera = scene::camera(width, height);
+        const DepthImage depth = crowded(camera, 3);
+        segmenter->segment(depth, camera, reused);
+        expect_same_bits(reused, segment(depth, camera));
+    }
+}
+
+TEST(CellsTest, NoiseOfTheSensorDecidesWhatIsOnePlane) {
+    // A step of 3 cm at 2 m is 5 sigma of a Kinect, and less than 2 of a sensor five times as noisy.
+    CameraInfo camera = scene::camera();
+    const auto left = [](const Eigen::Vector3d& p) { return p.x() < 0; };
+    const DepthImage depth = scene::render(
+        camera,
+        {scene::plane(scene::tilted(0, 0, {0, 0, 2.03})), scene::plane(scene::tilted(0, 0, {0, 0, 2}), left)},
+        true);
+    EXPECT_EQ(segment(depth, camera).regions.size(), 2u);
+    camera.noise.base_m *= 5;
+    camera.noise.quadratic_per_m *= 5;
+    EXPECT_EQ(segment(depth, camera).regions.size(), 1u);
+}
+
+TEST(CellsTest, NoiseOfTheSensorDecidesWhichCellsAreFlat) {
+    // Noise of 2 cm at 2 m: nothing to a Kinect, a wall to a sensor that is so.
+    CameraInfo camera = scene::camera();
+    const Plane wall = scene::tilted(0.1, 0.2, {0, 0, 2});
+    DepthImage depth = scene::render(camera, {scene::plane(wall)});
+    std::mt19937_64 random(5);
+    std::normal_distribution<double> noise(0, 20);
+    for (std::uint16_t& raw : depth.pixels)
+        raw = static_cast<std::uint16_t>(raw + std::lround(noise(random)));
+    EXPECT_LT(scene::labelled_share(segment(depth, camera)), 0.1);
+    camera.noise.base_m *= 5;
+    camera.noise.quadratic_per_m *= 5;
+    const Segmentation out = segment(depth, camera);
+    ASSERT_EQ(out.regions.size(), 1u);
+    EXPECT_LT(angle_between(out.regions[0].plane.normal, wall.normal), 0.5 * kDegrees);
+    EXPECT_GT(scene::labelled_share(out), 0.9);
+}
+
+TEST(CellsTest, RangeOfTheSensorDecidesWhatCounts) {
+    CameraInfo camera = scene::camera();
+    const Plane near = scene::tilted(0, 0, {0, 0, 1}), far = scene::tilted(0, 0, {0, 0, 3});
+    const auto left = [](const Eigen::Vector3d& p) { return p.x() < 0; };
+    const DepthImage depth = scene::render(camera, {scene::plane(far), scene::plane(near, left)}, true);
+    struct Case {
+        double min_m, max_m;
+        bool near, far;
+    };
+    for (const Case& c :
+         {Case{0.3, 8, true, true}, {0.3, 2, true, false}, {2, 8, false, true}, {4, 8, false, false}}) {
+        camera.depth_min_m = c.min_m;
+        camera.depth_max_m = c.max_m;
+        const Segmentation out = segment(depth, camera);
+        EXPECT_EQ(out.regions.size(), std::size_t{c.near} + std::size_t{c.far});
+        EXPECT_EQ(scene::find(out, near) != nullptr, c.near);
+        EXPECT_EQ(scene::find(out, far) != nullptr, c.far);
+        EXPECT_EQ(label_at(out, 0.2, 0.5) != 0, c.near);
+        EXPECT_EQ(label_at(out, 0.8, 0.5) != 0, c.far);
+    }
+}
+
+TEST(CellsTest, UnitsOfTheSensorChangeOnlyTheirRounding) {
+    CameraInfo camera = scene::camera();
+    const Plane wall = scene::tilted(0.1, 0.3, {0, 0, 2});
+    for (const double units : {500.0, 1000.0, 5000.0, 10000.0}) {
+        camera.depth_units_per_metre = units;
+        const Segmentation out = segment(scene::render(camera, {scene::plane(wall)}, true), camera);
+        ASSERT_EQ(out.regions.size(), 1u) << units;
+        EXPECT_NE(scene::find(out, wall, 0.1, 0.005), nullptr) << units;
+    }
 }
 
 TEST(CellsTest, RefusesBadOptions) {

@@ -123,6 +123,35 @@ TEST(GrowingTest, SmallRegionsAreDropped) {
     EXPECT_EQ(regions_of(make_map(20, 15, patch), 30 * kPixels), 0u);
 }
 
+TEST(GrowingTest, NeitherNoiseNorAngleNorPixels) {
+    // Limits of zero make points of a seed 0 / 0; sums of nothing determine no plane.
+    for (const float nan_or_zero : {0.0f, std::nanf("")}) {
+        OwnedMap owned = make_map(20, 15, [](int x, int) {
+            return InverseDepthPlane{0.2, x < 10 ? 0.1 : 0.4, 0.5};
+        });
+        for (Cell& cell : owned.cells) cell.sigma = nan_or_zero, cell.cos_limit = 1;
+        regions_of(owned, 0);
+        for (Cell& cell : owned.cells) cell.sigma = 0.002f, cell.mse = std::nanf("");
+        regions_of(owned, 0);
+        for (Cell& cell : owned.cells) cell.cos_limit = 1.0001f, cell.mse = 0;
+        regions_of(owned, 0);
+        owned = make_map(20, 15, [](int, int) { return InverseDepthPlane{0.2, 0.1, 0.5}; });
+        for (Cell& cell : owned.cells) cell.pixels = nan_or_zero;
+        EXPECT_EQ(regions_of(owned, 0), 0u);
+    }
+}
+
+TEST(GrowingTest, MoreRegionsThanLabels) {
+    // A checkerboard of planes 10 cm apart: a region a cell, if so small ones are asked for, but for some
+    // pairs that merge into a steep plane.
+    const auto board = [](int x, int y) {
+        return InverseDepthPlane{0, 0, 1 / ((x + y) % 2 == 0 ? 1.5 : 1.6)};
+    };
+    const std::size_t regions = regions_of(make_map(100, 60, board), 0);
+    EXPECT_GT(regions, 3500u);
+    EXPECT_LE(regions, 4096u);
+}
+
 TEST(GrowingTest, NothingPlanarOrNoCells) {
     EXPECT_EQ(regions_of(make_map(20, 15, [](int, int) { return InverseDepthPlane{}; })), 0u);
     EXPECT_EQ(regions_of(make_map(1, 1, [](int, int) { return InverseDepthPlane{0, 0, 0.5}; }), 0), 1u);

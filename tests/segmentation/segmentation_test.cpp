@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
 
 #include "segmentation/scene.hpp"
@@ -147,6 +148,60 @@ TEST_P(EveryMethod, SurvivesRandomImagesOfRandomSizes) {
         segmenter_->segment(depth, camera, out);
         expect_consistent(out, depth, camera);
     }
+}
+
+TEST_P(EveryMethod, SurvivesHostileCameras) {
+    std::mt19937_64 random(11);
+    const auto power = [&](int low, int high) {
+        return std::pow(10.0, std::uniform_int_distribution<int>(low, high)(random));
+    };
+    const auto one_in = [&](unsigned n) { return random() % n == 0; };
+    Segmentation out;
+    std::size_t regions = 0;
+    for (int trial = 0; trial < 400; ++trial) {
+        // A tilted wall, in raw units, whatever these mean.
+        const int width = one_in(8) ? 8192 : 72, height = width > 72 ? 9 : 56;
+        CameraInfo camera = scene::camera(width, height);
+        DepthImage depth(width, height);
+        const int slope = std::uniform_int_distribution<int>(-3, 3)(random);
+        for (int v = 0; v < height; ++v) {
+            for (int u = 0; u < width; ++u)
+                depth(u, v) = static_cast<std::uint16_t>(3000 + slope * (u % 500) + (one_in(9) ? 1 : 0));
+        }
+        const bool extreme = one_in(3);
+        const int range = extreme ? 300 : 12;
+        if (!one_in(3)) camera.depth_units_per_metre = power(-range, range);
+        if (one_in(2)) camera.depth.fx = power(-range, range) * width;
+        if (one_in(2)) camera.depth.fy = power(-range, range) * width;
+        if (one_in(4)) camera.depth.cx = power(-range, range);
+        camera.depth_min_m = one_in(2) ? 0 : 1 / camera.depth_units_per_metre;
+        camera.depth_max_m = std::min(1e308, 60000 / camera.depth_units_per_metre);
+        if (one_in(2)) camera.noise = {0, 0, 0};
+        if (one_in(4)) camera.noise.base_m = power(-range, range);
+        if (one_in(4)) camera.noise.quadratic_per_m = power(-range, range);
+        if (one_in(4)) camera.noise.offset_m = power(-range, range);
+        segmenter_->segment(depth, camera, out);
+        regions += out.regions.size();
+        ASSERT_EQ(out.labels.pixels.size(), depth.pixels.size());
+        for (const PlanarRegion& region : out.regions) {
+            EXPECT_TRUE(is_valid(region)) << trial;
+            EXPECT_GT(region.plane.d, 0) << trial;
+        }
+        for (const std::uint16_t label : out.labels.pixels) ASSERT_LE(label, out.regions.size());
+    }
+    EXPECT_GT(regions, 20u);
+}
+
+TEST_P(EveryMethod, WorksWithoutNoise) {
+    CameraInfo camera = scene::camera();
+    camera.noise = {0, 0, 0};
+    const Plane wall = scene::tilted(0.3, 0.2, {0, 0, 1.5});
+    const DepthImage depth = scene::render(camera, {scene::plane(wall)});
+    Segmentation out;
+    segmenter_->segment(depth, camera, out);
+    expect_consistent(out, depth, camera);
+    ASSERT_FALSE(out.regions.empty());
+    EXPECT_NE(scene::find(out, wall, 0.2, 0.01), nullptr);
 }
 
 TEST_P(EveryMethod, WorksAtManySizes) {
