@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <thread>
+
 #include "messages/decode.hpp"
 
 namespace planemap {
@@ -41,6 +44,21 @@ TEST_F(Status, CountsInputsGapsAndErrors) {
     EXPECT_DOUBLE_EQ(m.rate_hz, 2.0);
     EXPECT_EQ(m.state, module_status_t::RUNNING);
     EXPECT_NE(status_.line().find("running: 2.0 Hz"), std::string::npos) << status_.line();
+}
+
+TEST_F(Status, WorkIsTimedByTheWallAndByTheThread) {
+    {
+        const ModuleStatus::Work work(status_);
+        const double start_ms = thread_cpu_ms();
+        while (thread_cpu_ms() - start_ms < 20) {
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(60));
+    }
+    EXPECT_EQ(status_.work_ms().count(), 1);
+    EXPECT_EQ(status_.work_cpu_ms().count(), 1);
+    EXPECT_GT(status_.work_ms().sum(), 75);
+    EXPECT_GT(status_.work_cpu_ms().sum(), 19);
+    EXPECT_LT(status_.work_cpu_ms().sum(), 45) << "sleep is no work";
 }
 
 TEST_F(Status, StatesFollowTheWork) {

@@ -15,9 +15,9 @@ namespace planemap::bench_odometry {
 /// What counts as the same place.
 struct PlaceOptions {
     int places = 5;
-    double radius_m = 0.25, angle_deg = 20;  ///< a camera this near a place's, and turned so little, is there
-    double apart_m = 0.4, apart_deg = 35;    ///< two places differ by one of these at least
-    double away_s = 3;                       ///< between two visits
+    double radius_m = 0.4, angle_deg = 30;  ///< a camera this near a place's, and turned so little, is there
+    double apart_m = 0.4, apart_deg = 30;   ///< two places differ by one of these at least
+    double away_s = 3;                      ///< between two visits
 };
 
 /// A place, and the moments of the visits to it: when the camera was nearest to it, each time it came.

@@ -18,8 +18,9 @@ struct Table2Line {
 };
 Table2Line summarised(const std::vector<RevisitErrors>& runs);
 
-/// Runs the methods through four simulated walks about five places of an office in random order, and through
-/// redkitchen, whose five places are found by its true poses, and prints a table each. Returns its lines for
+/// Runs the methods through redkitchen, whose five places are found by its true poses, and through four
+/// simulated walks about five places of an office in random order, and prints a table each. Returns its lines
+/// for
 /// --json.
 nlohmann::ordered_json print_table2(const Benchmark& benchmark, const std::vector<MethodInfo>& methods,
                                     std::FILE* out);
