@@ -11,8 +11,14 @@ namespace planemap {
 /// The image pyramid that tracking starts from or ends in.
 struct FlowPyramid {
     std::vector<cv::Mat> images;  ///< OpenCV's layout: levels, with derivatives between them if asked for
+    bool has_derivatives = false;
 
     bool empty() const { return images.empty(); }
+    /// The image at a level that exists; 0 is the full one.
+    const cv::Mat& level(int i) const {
+        return images[static_cast<std::size_t>(has_derivatives ? 2 * i : i)];
+    }
+    int levels() const { return static_cast<int>(images.size()) / (has_derivatives ? 2 : 1); }
 };
 
 /// Levels of an image with borders for windows of window_px. With `derivatives`, tracking that starts from it
@@ -20,7 +26,8 @@ struct FlowPyramid {
 FlowPyramid make_flow_pyramid(const GrayImage& gray, int levels, int window_px, bool derivatives);
 
 /// Pyramidal Lucas-Kanade. `to_pixels` holds the first guesses and becomes the result; the return says which
-/// points were found inside the image.
+/// points were found inside the image, where both images look alike. Noise does not: flow finds something
+/// near its guess in a dark image too, and would confirm any guess.
 std::vector<char> track_flow(const FlowPyramid& from, const FlowPyramid& to,
                              const std::vector<cv::Point2f>& from_pixels, std::vector<cv::Point2f>& to_pixels,
                              int window_px, int levels, int iterations);

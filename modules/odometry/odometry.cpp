@@ -23,6 +23,8 @@ constexpr int kMinSurfaceCells = 40;     // for a keyframe without texture
 constexpr double kStillPredicted = 0.3;  // seconds without a pose for which the prediction means something
 constexpr double kLongestGap = 1.5;      // seconds without a pose after which depth alone is not followed
 constexpr double kReach = 0.3;           // metres and radians that a camera may always have moved
+constexpr int kBlindFrames = 3;          // without features, after which they are not looked for any harder
+constexpr int kBlindRetry = 8;           // every so many blind frames are looked at as others
 constexpr double kSureShare = 0.9;       // of the visible surface that must fit where nothing was predicted
 
 double seconds(std::int64_t microseconds) {
@@ -127,6 +129,7 @@ class Odometry::State {
     MotionFilter filter_;          ///< of the last frame with a pose
     Readout readout_;
     int lost_frames_ = 0;
+    int blind_frames_ = 0;       ///< poses in a row that rest on depth alone
     DenseReference last_dense_;  ///< of the last frame with a pose
     FlowPyramid last_pyramid_;   ///< of the last frame, when it was tracked by features
     std::vector<cv::Point2f> last_pixels_;
@@ -201,6 +204,7 @@ OdometryResult Odometry::State::process(const OdometryFrame& frame) {
     std::optional<Located> located = locate(view);
     if (!located) {
         ++lost_frames_;
+        blind_frames_ = 0;
         filter_.start(filter_.odom_from_camera());
         last_pyramid_ = {};
         if (lost_frames_ >= options_.max_lost_frames)
@@ -244,12 +248,13 @@ std::optional<Located> Odometry::State::locate(const PreparedFrame& view) {
         for (const TrackPoint& point : current().points) pixels.push_back(point.pixel);
         FlowSearch search{&current().pyramid, &pixels, nullptr, options_.flow_levels};
         track = track_points(options_, current(), view, guess, search);
-        if (!track) {
+        const bool is_blind = blind_frames_ >= kBlindFrames && blind_frames_ % kBlindRetry != 0;
+        if (!track && !is_blind) {
             guess = coarse_guess(options_, current(), view, guess, last_dense_,
                                  current().odom_from_keyframe.inverse() * filter_.odom_from_camera());
             track = second_chances(view, guess);
         }
-        if (!track)
+        if (!track && !is_blind)
             if (std::optional<Located> known = relocalise(view)) return known;
     }
     if (!track) track = track_geometry(view, guess);
@@ -387,6 +392,7 @@ void Odometry::State::follow(const PreparedFrame& view, Located& located) {
         located.move_to(filter_.update(located.odom_from_camera(), elapsed));
     pose_utime_ = view.utime;
     lost_frames_ = 0;
+    blind_frames_ = located.track.by_features || elapsed > options_.max_prediction_s ? 0 : blind_frames_ + 1;
     last_dense_ = make_dense_reference(view.pyramid, *view.depth, *view.camera);
     last_color_offset_s_ =
         located.track.by_features ? located.track.alignment.color_offset_s : view.color_offset_s;
@@ -406,7 +412,7 @@ bool Odometry::State::wants_keyframe(const PreparedFrame& view, const Located& l
         return true;
     if (options_.method == "paper") return false;
     if (!located.track.by_features)
-        return view.gray != nullptr ||
+        return (view.gray && (blind_frames_ < kBlindFrames || blind_frames_ % kBlindRetry == 0)) ||
                located.track.inliers < options_.min_tracked_share * static_cast<double>(view.samples.size());
     return located.track.inliers < options_.min_tracked_share * static_cast<double>(current().points.size());
 }
@@ -501,6 +507,7 @@ LocalKeyframe Odometry::State::make_local(const PreparedFrame& view) const {
     const Twist& velocity = filter_.velocity();
     local.surface = Surface(*view.depth, view.camera->color, *view.camera, options_.surface_cell_px,
                             view.readout_s * velocity);
+    local.surface.lay_on(view.regions, view.camera->noise);
     if (!view.gray) return local;
     const PinholeCamera& camera = view.camera->color;
     const Pose depth_from_color_time = pose_from_twist(-last_color_offset_s_ * filter_.velocity());

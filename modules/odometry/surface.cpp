@@ -8,6 +8,9 @@
 namespace planemap {
 namespace {
 
+constexpr double kSamePlaneAngle = 0.26;  // 15 degrees between a cell and the region it lies on
+constexpr double kSamePlaneGap = 0.05;    // metres beside the region's outline
+
 bool is_trusted(double z, const CameraInfo& info) {
     return z >= info.depth_min_m && z <= info.depth_max_m;
 }
@@ -62,7 +65,7 @@ std::vector<SurfaceSample> without_shutter(std::vector<SurfaceSample> samples, c
 
 Surface::Surface(const DepthImage& depth, const PinholeCamera& camera, const CameraInfo& info, int cell_px,
                  const Twist& over_readout)
-    : cell_px_(cell_px), columns_(depth.width / cell_px), rows_(depth.height / cell_px) {
+    : camera_(camera), cell_px_(cell_px), columns_(depth.width / cell_px), rows_(depth.height / cell_px) {
     planes_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
     const int needed = cell_px * cell_px / 4 * 3 / 4;  // of every other pixel of every other row
     const double centre = 0.5 * cell_px;
@@ -94,6 +97,30 @@ Surface::Surface(const DepthImage& depth, const PinholeCamera& camera, const Cam
             ++count_;
             const double late = row_share(camera, row * cell_px + centre);
             plane = pose_from_twist(-late * over_readout) * plane;
+        }
+    }
+}
+
+void Surface::lay_on(std::span<const PlanarRegion> regions, const DepthNoise& noise) {
+    const double centre = 0.5 * (cell_px_ - 1);
+    for (int row = 0; row < rows_; ++row) {
+        for (int column = 0; column < columns_; ++column) {
+            Plane& plane = planes_[static_cast<std::size_t>(row * columns_ + column)];
+            if (!(plane.d > 0)) continue;
+            const Eigen::Vector3d ray =
+                camera_.unproject(column * cell_px_ + centre, row * cell_px_ + centre, 1);
+            const Eigen::Vector3d p = ray * (-plane.d / plane.normal.dot(ray));
+            double nearest = noise.sigma(p.z());
+            const PlanarRegion* on = nullptr;
+            for (const PlanarRegion& region : regions) {
+                const double off = std::abs(region.plane.signed_distance(p));
+                if (off > nearest || angle_between(region.plane.normal, plane.normal) > kSamePlaneAngle ||
+                    distance(region, region.plane.project(p)) > kSamePlaneGap)
+                    continue;
+                nearest = off;
+                on = &region;
+            }
+            if (on) plane = on->plane;
         }
     }
 }

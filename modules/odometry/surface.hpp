@@ -2,11 +2,13 @@
 // A keyframe's depth as small planes, and other frames' depth held against it (point to plane).
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "core/camera.hpp"
 #include "core/image.hpp"
 #include "core/plane.hpp"
+#include "core/region.hpp"
 #include "odometry/alignment.hpp"
 
 namespace planemap {
@@ -34,12 +36,17 @@ class Surface {
     Surface(const DepthImage& depth, const PinholeCamera& camera, const CameraInfo& info, int cell_px,
             const Twist& over_readout = Twist::Zero());
 
+    /// Lays cells that lie on a region, within the noise of a reading, onto its plane. A cell's own plane
+    /// tilts by its noise, and a wall of tilted cells holds a camera that slides along it.
+    void lay_on(std::span<const PlanarRegion> regions, const DepthNoise& noise);
+
     /// Number of cells with a plane.
     int cells() const { return count_; }
     /// The plane at a pixel (camera frame), or nullptr.
     const Plane* at(const Eigen::Vector2d& pixel) const;
 
   private:
+    PinholeCamera camera_;
     int cell_px_ = 1, columns_ = 0, rows_ = 0, count_ = 0;
     std::vector<Plane> planes_;  ///< d = 0: none
 };

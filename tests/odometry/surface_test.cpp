@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <cmath>
+#include <random>
+#include <vector>
 
 #include "room.hpp"
 
@@ -62,6 +65,38 @@ TEST(Surface, OneWallSaysNothingAlongItself) {
     EXPECT_LT(information(0, 0), 1e-3 * information(2, 2));
     EXPECT_LT(information(1, 1), 1e-3 * information(2, 2));
     EXPECT_LT(information(5, 5), 1e-3 * information(3, 3));
+}
+
+TEST(Surface, CellsOnARegionTakeItsPlane) {
+    const CameraInfo camera = room_camera();
+    DepthImage depth = render_room(camera, Pose::Identity(), true, {{{0, 0, -1}, 2}}).depth;
+    std::mt19937_64 random(4);
+    std::normal_distribution<double> noise(0, camera.noise.sigma(2) * camera.depth_units_per_metre);
+    for (std::uint16_t& raw : depth.pixels)
+        raw = static_cast<std::uint16_t>(std::lround(raw + noise(random)));
+    Surface surface(depth, camera.color, camera, 16);
+    const auto samples = sample_depth(depth, camera.color, camera, 8);
+    const auto hold_along_wall = [&] {
+        return match_surface(surface, camera.color, samples, Pose::Identity(), 0.04, 1)
+            .term.information(0, 0);
+    };
+    const double tilted = hold_along_wall();
+    PlanarRegion wall;
+    wall.plane = {{0, 0, -1}, 2};
+    wall.outline.rings = {{{-3, -3}, {3, -3}, {3, 3}, {-3, 3}}};
+    wall.box.frame_from_box = Pose(Eigen::Translation3d(0, 0, 2));
+    wall.box.half_extents = {3, 3, 0};
+    surface.lay_on(std::vector{wall}, camera.noise);
+    EXPECT_LT(hold_along_wall(), 0.2 * tilted);
+    const Plane* cell = surface.at({160, 120});
+    ASSERT_TRUE(cell);
+    EXPECT_EQ(cell->d, 2);
+    // A region elsewhere changes nothing.
+    Surface other(depth, camera.color, camera, 16);
+    const Plane before = *other.at({160, 120});
+    wall.plane.d = 2.2;
+    other.lay_on(std::vector{wall}, camera.noise);
+    EXPECT_EQ(other.at({160, 120})->d, before.d);
 }
 
 TEST(SamplesTest, AreWhereTheyWereAtTheImagesTime) {

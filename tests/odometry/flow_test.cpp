@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "odometry/flow.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace planemap {
+namespace {
+
+constexpr int kWidth = 160, kHeight = 120;
+
+/// Blobs of random brightness, moved right by `shift` pixels, with noise.
+GrayImage blobs(double shift, double contrast, double noise, std::uint64_t seed) {
+    GrayImage image(kWidth, kHeight);
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> n(0, noise);
+    for (int v = 0; v < kHeight; ++v) {
+        for (int u = 0; u < kWidth; ++u) {
+            const double x = u - shift;
+            const double value =
+                128 + contrast * (std::sin(0.31 * x + 0.11 * v) + std::sin(0.23 * v - 0.17 * x) +
+                                  std::sin(0.5 * x) * std::sin(0.45 * v));
+            image(u, v) = static_cast<std::uint8_t>(std::clamp(value + n(random), 0.0, 255.0));
+        }
+    }
+    return image;
+}
+
+/// Share of points found, and of all points those found within a pixel of the true shift of 2.
+std::pair<double, double> track(const GrayImage& from, const GrayImage& to) {
+    const FlowPyramid a = make_flow_pyramid(from, 3, 11, true), b = make_flow_pyramid(to, 3, 11, false);
+    std::vector<cv::Point2f> before;
+    for (int v = 20; v < kHeight - 20; v += 10)
+        for (int u = 20; u < kWidth - 20; u += 10)
+            before.emplace_back(static_cast<float>(u), static_cast<float>(v));
+    std::vector<cv::Point2f> after = before;
+    const std::vector<char> found = track_flow(a, b, before, after, 11, 3, 10);
+    double all = 0, right = 0;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        all += found[i];
+        right +=
+            found[i] && std::abs(after[i].x - before[i].x - 2) < 1 && std::abs(after[i].y - before[i].y) < 1;
+    }
+    return {all / static_cast<double>(found.size()), right / static_cast<double>(found.size())};
+}
+
+TEST(FlowTest, FindsWhatMoved) {
+    const auto [found, right] = track(blobs(0, 30, 1, 1), blobs(2, 30, 1, 2));
+    EXPECT_GT(right, 0.95);
+    EXPECT_LT(found - right, 0.03);
+}
+
+TEST(FlowTest, FindsItInNoise) {
+    const auto [found, right] = track(blobs(0, 30, 4, 1), blobs(2, 25, 4, 2));
+    EXPECT_GT(right, 0.9);
+}
+
+TEST(FlowTest, FindsNothingInTheDark) {
+    const auto [found, right] = track(blobs(0, 0, 4, 1), blobs(0, 0, 4, 2));
+    EXPECT_LT(found, 0.2);
+}
+
+TEST(FlowTest, LevelsAreTheSameWithDerivatives) {
+    const GrayImage image = blobs(0, 30, 1, 1);
+    const FlowPyramid with = make_flow_pyramid(image, 3, 11, true),
+                      without = make_flow_pyramid(image, 3, 11, false);
+    ASSERT_EQ(with.levels(), 3);
+    ASSERT_EQ(without.levels(), 3);
+    for (int i = 0; i < 3; ++i) {
+        ASSERT_EQ(with.level(i).size(), without.level(i).size());
+        EXPECT_EQ(with.level(i).cols, kWidth >> i);
+        EXPECT_EQ(with.level(i).at<unsigned char>(10, 10), without.level(i).at<unsigned char>(10, 10));
+    }
+}
+
+}  // namespace
+}  // namespace planemap
