@@ -95,9 +95,9 @@ std::vector<cv::Point2f> select_corners(const GrayImage& gray, const DepthImage&
 
 std::vector<Feature> describe(const GrayImage& gray, const DepthImage& depth, const CameraInfo& info,
                               int max_features, double max_depth_spread) {
-    // Some features have no sound depth: half as many again are looked for.
+    // Some features have no sound depth: a quarter more are looked for.
     const cv::Ptr<cv::ORB> orb =
-        cv::ORB::create(max_features * 3 / 2, 1.3f, 5, 24, 0, 2, cv::ORB::FAST_SCORE, 24, 15);
+        cv::ORB::create(max_features * 5 / 4, 1.5f, 3, 24, 0, 2, cv::ORB::FAST_SCORE, 24, 15);
     std::vector<cv::KeyPoint> keypoints;
     cv::Mat descriptors;
     orb->detectAndCompute(as_mat(gray), cv::noArray(), keypoints, descriptors);
