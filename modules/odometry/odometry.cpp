@@ -57,6 +57,22 @@ void put_on_regions(std::vector<Feature>& features, const PreparedFrame& view) {
     }
 }
 
+/// Brings features that the colour image showed to where they were at the depth image's time, onto the
+/// regions that they lie on there.
+void put_at_depth_time(std::vector<Feature>& features, const PreparedFrame& view, double color_offset_s,
+                       const Twist& velocity) {
+    const auto move = [](Feature& feature, const Twist& motion) {
+        const Eigen::Vector3d point = moved(motion, feature.point.cast<double>());
+        feature.point = point.cast<float>();
+    };
+    for (Feature& feature : features) move(feature, -color_offset_s * velocity);
+    put_on_regions(features, view);
+    for (Feature& feature : features) {
+        const double late = row_share(view.camera->color, static_cast<double>(feature.pixel.y()));
+        move(feature, -late * view.readout_s * velocity);
+    }
+}
+
 /// A matched descriptor; ORB is coarser than flow, in the image and in depth.
 PointTerm match_term(const Feature& seen, const Feature& here, const PreparedFrame& view) {
     const double z = here.point.z(), sigma = view.camera->noise.sigma(z) / (z * z);
@@ -552,7 +568,7 @@ Keyframe Odometry::State::add_keyframe(PreparedFrame& view, LocalKeyframe local,
     if (view.gray) {
         keyframe.features = describe(*view.gray, *view.depth, *view.camera, options_.max_descriptors,
                                      options_.max_depth_spread);
-        put_on_regions(keyframe.features, view);
+        put_at_depth_time(keyframe.features, view, last_color_offset_s_, filter_.velocity());
         known_.add({keyframe.id, odom_from_camera, keyframe.features, make_thumbnail(*view.gray)});
     }
     if (options_.method == "paper" && view.gray) last_planar_ = planar_features(view);
