@@ -192,9 +192,10 @@ void GraphOptions::validate() const {
 }
 
 struct GraphOptimisation::Work {
-    std::vector<graph::PoseEdge> trusted_edges;  ///< to start with; none: the poses are near enough
     std::vector<graph::PoseEdge> edges;
-    std::vector<Pose> poses;  ///< world_from_camera of each node
+    std::vector<graph::PoseEdge> trusting_edges;  ///< to start with; none: the poses are near enough
+    std::vector<graph::PoseEdge> new_loops;       ///< what they trust
+    std::vector<Pose> poses;                      ///< world_from_camera of each node
     std::vector<graph::Landmark> landmarks;
     std::vector<graph::Sighting> sightings;
     double kernel_width = 0;
@@ -203,10 +204,18 @@ struct GraphOptimisation::Work {
     int parts_moved = 0;  ///< how often a part of the graph had been moved as a whole
 
     /// A loop closure far from the present poses is first trusted fully, so that it can pull against the
-    /// kernel; then the kernel lets go of what the rest contradicts.
+    /// kernel; when the rest contradicts it, the kernel lets go of it.
     void run() {
-        graph::optimise(poses, trusted_edges, 0, {0.0, max_iterations});
-        graph::optimise(poses, edges, 0, {kernel_width, max_iterations}, &landmarks, sightings);
+        const graph::OptimisationOptions options{kernel_width, max_iterations};
+        if (!trusting_edges.empty()) {
+            graph::optimise(poses, trusting_edges, 0, options, &landmarks, sightings);
+            const bool fit = std::all_of(new_loops.begin(), new_loops.end(), [&](const auto& edge) {
+                return graph::edge_error(edge, poses[at(edge.from)], poses[at(edge.to)]).norm() <
+                       kernel_width;
+            });
+            if (fit) return;
+        }
+        graph::optimise(poses, edges, 0, options, &landmarks, sightings);
     }
 };
 
@@ -275,7 +284,7 @@ class PoseGraph::Impl {
     bool is_due() const {
         constexpr std::size_t kNodesAKeyframe = 50;
         if (options_.optimise_every > 0 && nodes_.size() % at(options_.optimise_every) == 0) return true;
-        if (worst_new_loop() > 2 * options_.kernel_width) return true;
+        if (worst_new_loop() > kFar * options_.kernel_width) return true;
         return (loop_edges_.size() > loops_optimised_ || disagreement_ > options_.landmark_trigger) &&
                since_optimised_ > nodes_.size() / kNodesAKeyframe;
     }
@@ -528,14 +537,16 @@ class PoseGraph::Impl {
         }
     }
 
-    /// All edges; of the gaps only those across which nothing else ties the parts.
-    std::vector<graph::PoseEdge> all_edges(bool trusted_loops_only) const {
+    /// All edges; of the gaps only those across which nothing else ties the parts. To start with, loop
+    /// closures that counted as wrong are left out, and new ones are beyond doubt.
+    std::vector<graph::PoseEdge> all_edges(bool to_start_with) const {
         std::vector<graph::PoseEdge> edges = odometry_;
         Components parts(nodes_.size());
         for (const auto& edge : odometry_) parts.join(edge.from, edge.to);
         for (std::size_t i = 0; i < loop_edges_.size(); ++i) {
-            if (trusted_loops_only && loops_[i].weight < kDistrusted) continue;
+            if (to_start_with && loops_[i].weight < kDistrusted) continue;
             edges.push_back(loop_edges_[i]);
+            edges.back().robust = !to_start_with || i < loops_optimised_;
             parts.join(loop_edges_[i].from, loop_edges_[i].to);
         }
         for (const auto& gap : gaps_) {
@@ -599,6 +610,7 @@ class PoseGraph::Impl {
             trajectory_.keyframes[i].world_from_camera = poses_[i];
     }
 
+    static constexpr double kFar = 2;            // kernel widths: where a loop closure can no longer pull
     static constexpr double kDistrusted = 0.05;  // weight of a loop closure that counts as wrong
 
     GraphOptions options_;
@@ -623,8 +635,12 @@ class PoseGraph::Impl {
 
 std::unique_ptr<GraphOptimisation::Work> PoseGraph::Impl::prepare() {
     auto work = std::make_unique<GraphOptimisation::Work>();
-    if (worst_new_loop() > options_.kernel_width) work->trusted_edges = all_edges(true);
     work->edges = all_edges(false);
+    if (worst_new_loop() > kFar * options_.kernel_width) {
+        work->trusting_edges = all_edges(true);
+        work->new_loops.assign(loop_edges_.begin() + static_cast<std::ptrdiff_t>(loops_optimised_),
+                               loop_edges_.end());
+    }
     work->poses = poses_;
     work->landmarks = landmarks_.landmarks();
     work->sightings = landmarks_.shared();

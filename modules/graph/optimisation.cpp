@@ -210,7 +210,7 @@ ceres::Solver::Options solver_options(const OptimisationOptions& options) {
     solver.num_threads = 1;
     solver.max_num_iterations = options.max_iterations;
     solver.initial_trust_region_radius = 1e8;  // the start is a good one: steps of Gauss-Newton at once
-    solver.function_tolerance = 1e-6;
+    solver.function_tolerance = 1e-5;
     solver.parameter_tolerance = 1e-9;
     solver.logging_type = ceres::SILENT;
     return solver;
