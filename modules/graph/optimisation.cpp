@@ -15,7 +15,7 @@ namespace planemap::graph {
 namespace {
 
 constexpr double kSightingKernel = 2.0;  // standard deviations: a wrong sighting must not bend the graph
-constexpr double kStillStep = 3e-4;      // metres and radians, RMS over the nodes: nothing moved any more
+constexpr double kStillStep = 5e-4;      // metres and radians, RMS over the nodes: nothing moved any more
 constexpr std::ptrdiff_t kLoopsSolvedDirectly = 300;
 constexpr std::ptrdiff_t kLoopsKept = 100;  // in the sparse part that is factored when there are more
 
