@@ -17,7 +17,7 @@ namespace {
 constexpr double kSightingKernel = 2.0;  // standard deviations: a wrong sighting must not bend the graph
 constexpr double kStillStep = 5e-4;      // metres and radians, RMS over the nodes: nothing moved any more
 constexpr std::ptrdiff_t kLoopsSolvedDirectly = 300;
-constexpr std::ptrdiff_t kLoopsKept = 100;  // in the sparse part that is factored when there are more
+constexpr std::ptrdiff_t kLoopsKept = 40;  // in the sparse part that is factored when there are more
 
 /// J with exp(w + x) = exp(w) exp(J x) for small x.
 Eigen::Matrix3d so3_right_jacobian(const Eigen::Vector3d& w) {
