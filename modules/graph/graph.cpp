@@ -14,6 +14,7 @@
 #include "graph/landmarks.hpp"
 #include "graph/optimisation.hpp"
 #include "graph/place_index.hpp"
+#include "graph/surroundings.hpp"
 #include "graph/verification.hpp"
 #include "graph/view.hpp"
 
@@ -47,6 +48,7 @@ struct Link {
     int other = -1;
     Drift drift;
     bool odometry = false;
+    int loop = -1;  ///< index of the loop closure; -1: none
 };
 
 bool is_pose(const Pose& pose) {
@@ -132,61 +134,33 @@ class Components {
 
 }  // namespace
 
-void GraphOptions::validate() const {
-    FieldErrors errors("graph options");
-    const auto count = [&](int value, int least, const char* field) {
-        errors.require(value >= least, field, value, "at least " + std::to_string(least));
-    };
-    const auto positive = [&](double value, const char* field) {
-        errors.require(std::isfinite(value) && value > 0, field, value, "finite and greater than 0");
-    };
-    const auto not_negative = [&](double value, const char* field) {
-        errors.require(std::isfinite(value) && value >= 0, field, value, "finite and at least 0");
-    };
-    const auto share = [&](double value, const char* field) {
-        errors.require(value >= 0 && value <= 1, field, value, "0 to 1");
-    };
-    count(max_features, 1, "max_features");
-    count(min_separation, 1, "min_separation");
-    count(appearance_candidates, 0, "appearance_candidates");
-    count(place_candidates, 0, "place_candidates");
-    count(max_closures, 0, "max_closures");
-    share(min_appearance, "min_appearance");
-    share(min_overlap, "min_overlap");
-    not_negative(max_place_drift_m, "max_place_drift_m");
-    errors.require(max_descriptor_distance >= 0 && max_descriptor_distance <= 256, "max_descriptor_distance",
-                   max_descriptor_distance, "0 to 256");
-    share(matching_ratio, "matching_ratio");
-    not_negative(noise.base_m, "noise.base_m");
-    not_negative(noise.quadratic_per_m, "noise.quadratic_per_m");
-    errors.require(std::isfinite(noise.offset_m), "noise.offset_m", noise.offset_m, "finite");
-    positive(bearing_sigma, "bearing_sigma");
-    count(min_inliers, 3, "min_inliers");
-    share(min_inlier_ratio, "min_inlier_ratio");
-    share(min_visible_ratio, "min_visible_ratio");
-    share(max_contradiction, "max_contradiction");
-    not_negative(drift_per_metre, "drift_per_metre");
-    not_negative(drift_per_radian, "drift_per_radian");
-    not_negative(drift_base_m, "drift_base_m");
-    not_negative(drift_base_rad, "drift_base_rad");
-    not_negative(max_lost_speed, "max_lost_speed");
-    positive(odometry_sigma_m, "odometry_sigma_m");
-    positive(odometry_sigma_rad, "odometry_sigma_rad");
-    positive(loop_sigma_m, "loop_sigma_m");
-    positive(loop_sigma_rad, "loop_sigma_rad");
-    positive(landmark_extent_m, "landmark_extent_m");
-    positive(landmark_angle_deg, "landmark_angle_deg");
-    positive(landmark_distance_m, "landmark_distance_m");
-    not_negative(landmark_gap_m, "landmark_gap_m");
-    positive(landmark_sigma_m, "landmark_sigma_m");
-    positive(landmark_trigger, "landmark_trigger");
-    positive(kernel_width, "kernel_width");
-    count(max_iterations, 1, "max_iterations");
-    count(optimise_every, 0, "optimise_every");
-    positive(revision_m, "revision_m");
-    positive(revision_rad, "revision_rad");
-    errors.throw_if_any();
-}
+struct GraphOptimisation::Work {
+    std::vector<graph::PoseEdge> edges;
+    std::vector<graph::PoseEdge> trusting_edges;  ///< to start with; none: the poses are near enough
+    std::vector<graph::PoseEdge> new_loops;       ///< what they trust
+    std::vector<Pose> poses;                      ///< world_from_camera of each node
+    std::vector<graph::Landmark> landmarks;
+    std::vector<graph::Sighting> sightings;
+    double kernel_width = 0;
+    int max_iterations = 0;
+    int loops = 0;        ///< how many there were
+    int parts_moved = 0;  ///< how often a part of the graph had been moved as a whole
+
+    /// A loop closure far from the present poses is first trusted fully, so that it can pull against the
+    /// kernel; when the rest contradicts it, the kernel lets go of it.
+    void run() {
+        const graph::OptimisationOptions options{kernel_width, max_iterations};
+        if (!trusting_edges.empty()) {
+            graph::optimise(poses, trusting_edges, 0, options, &landmarks, sightings);
+            const bool fit = std::all_of(new_loops.begin(), new_loops.end(), [&](const auto& edge) {
+                return graph::edge_error(edge, poses[at(edge.from)], poses[at(edge.to)]).norm() <
+                       kernel_width;
+            });
+            if (fit) return;
+        }
+        graph::optimise(poses, edges, 0, options, &landmarks, sightings);
+    }
+};
 
 class PoseGraph::Impl {
   public:
@@ -196,18 +170,30 @@ class PoseGraph::Impl {
     }
 
     const KeyframeTrajectory& add(const Keyframe& keyframe) {
-        check(keyframe, nodes_.empty() ? -1 : nodes_.back().id);
-        append(keyframe);
-        const bool closed = close_loops();
-        const double disagreement = sight(keyframe);
-        if (closed || due(disagreement)) optimise(closed);
+        extend(keyframe);
+        if (due_) optimise();
         publish();
+        return trajectory_;
+    }
+
+    const KeyframeTrajectory& insert(const Keyframe& keyframe) {
+        extend(keyframe);
+        publish();
+        return trajectory_;
+    }
+
+    bool due() const { return due_; }
+
+    std::unique_ptr<GraphOptimisation::Work> prepare();
+    const KeyframeTrajectory& apply(const GraphOptimisation::Work& work) {
+        take(work);
+        publish_poses();
         return trajectory_;
     }
 
     const KeyframeTrajectory& finish() {
         if (newest() > 0) {
-            optimise(false);
+            optimise();
             publish_poses();
         }
         return trajectory_;
@@ -227,15 +213,34 @@ class PoseGraph::Impl {
         return landmarks_.add(newest(), keyframe.regions, poses_.back());
     }
 
-    /// Whether to optimise without a loop closure. A disagreement of planes waits the longer the larger the
-    /// graph is, so that the cost a keyframe stays flat; finish() makes up for what waits.
-    bool due(double disagreement) {
-        constexpr std::size_t kNodesAKeyframe = 50;
+    void extend(const Keyframe& keyframe) {
+        check(keyframe, nodes_.empty() ? -1 : nodes_.back().id);
+        append(keyframe);
+        close_loops();
+        disagreement_ = std::max(disagreement_, sight(keyframe));
         ++since_optimised_;
-        disagreement_ = std::max(disagreement_, disagreement);
+        due_ = due_ || is_due();
+    }
+
+    /// At once when a loop closure is far from the present poses. What pulls less waits the longer the larger
+    /// the graph is, so that the cost a keyframe stays flat; finish() makes up for what waits.
+    bool is_due() const {
+        constexpr std::size_t kNodesAKeyframe = 50;
         if (options_.optimise_every > 0 && nodes_.size() % at(options_.optimise_every) == 0) return true;
-        return disagreement_ > options_.landmark_trigger &&
+        if (worst_new_loop() > kFar * options_.kernel_width) return true;
+        return (loop_edges_.size() > loops_optimised_ || disagreement_ > options_.landmark_trigger) &&
                since_optimised_ > nodes_.size() / kNodesAKeyframe;
+    }
+
+    /// Largest whitened error of the loop closures that no optimisation knows yet.
+    double worst_new_loop() const {
+        double worst = 0;
+        for (std::size_t i = loops_optimised_; i < loop_edges_.size(); ++i) {
+            const graph::PoseEdge& edge = loop_edges_[i];
+            worst =
+                std::max(worst, graph::edge_error(edge, poses_[at(edge.from)], poses_[at(edge.to)]).norm());
+        }
+        return worst;
     }
 
     /// Adds the node, ties it to the previous one and places it.
@@ -245,6 +250,7 @@ class PoseGraph::Impl {
         links_.emplace_back();
         const int node = newest();
         index_of_[keyframe.id] = node;
+        hangs_on_.push_back(node - 1);
         const auto previous = index_of_.find(keyframe.previous_id);
         if (previous != index_of_.end() && previous->second != node) {
             add_odometry(previous->second, node, keyframe);
@@ -264,6 +270,7 @@ class PoseGraph::Impl {
                              false});
         const double drift = options_.drift_per_metre * step.translation().norm() +
                              options_.drift_per_radian * rotation_angle(step);
+        hangs_on_.back() = from;
         link(from, to, Drift{drift, drift} + worst_sigmas(keyframe.covariance), true);
         poses_.push_back(orthonormalised(poses_[at(from)] * step));
     }
@@ -284,23 +291,30 @@ class PoseGraph::Impl {
 
     Pose world_from_odom() const { return trajectory_.world_from_odom; }
 
-    void link(int a, int b, const Drift& drift, bool odometry) {
-        links_[at(a)].push_back({b, drift, odometry});
-        links_[at(b)].push_back({a, drift, odometry});
+    void link(int a, int b, const Drift& drift, bool odometry, int loop = -1) {
+        links_[at(a)].push_back({b, drift, odometry, loop});
+        links_[at(b)].push_back({a, drift, odometry, loop});
     }
 
-    /// Least drift from the newest node to each other one (Dijkstra).
-    std::vector<Drift> drifts() const {
+    /// Whether the poses follow a link. Not a loop closure that the last optimisation did not know, or let go
+    /// of.
+    bool holds(const Link& link) const {
+        return link.loop < 0 || (link.loop < loops_applied_ && loops_[at(link.loop)].weight >= kDistrusted);
+    }
+
+    /// Least drift from a node to each other one (Dijkstra).
+    std::vector<Drift> drifts_from(int source) const {
         std::vector<Drift> drifts(nodes_.size());
-        drifts.back() = {0, 0};
+        drifts[at(source)] = {0, 0};
         using Entry = std::pair<double, int>;
         std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
-        open.emplace(0.0, newest());
+        open.emplace(0.0, source);
         while (!open.empty()) {
             const auto [size, node] = open.top();
             open.pop();
             if (size > drifts[at(node)].size()) continue;
             for (const Link& link : links_[at(node)]) {
+                if (!holds(link)) continue;
                 const Drift drift = drifts[at(node)] + link.drift;
                 if (drift.size() >= drifts[at(link.other)].size()) continue;
                 drifts[at(link.other)] = drift;
@@ -390,10 +404,36 @@ class PoseGraph::Impl {
                    options_.drift_base_rad + drift.radians;
     }
 
-    /// Joins the newest keyframe to earlier ones that saw the same; true when any was found.
-    bool close_loops() {
-        if (newest() == 0 || options_.max_closures == 0) return false;
-        const std::vector<Drift> drifts = this->drifts();
+    /// Whether what was seen about the node can be what was seen about the newest one, if these two are where
+    /// the closure says. Asked only of a closure that moves the newest so far that a false one would matter;
+    /// the farther it moves, the wider drift lets us look around.
+    bool fits_surroundings(int node, const std::vector<Drift>& of_newest, const Pose& node_from_newest,
+                           const graph::VerificationOptions& options) const {
+        const Pose expected = poses_[at(node)].inverse(Eigen::Isometry) * poses_.back();
+        const double jump = (expected.translation() - node_from_newest.translation()).norm() +
+                            rotation_angle(expected.inverse(Eigen::Isometry) * node_from_newest);
+        if (jump < options_.surroundings_from_m) return true;
+        const double reach = std::min(1.0, jump / 3);
+        const std::vector<Drift> of_node = drifts_from(node);
+        const Pose move = poses_[at(node)] * node_from_newest * poses_.back().inverse(Eigen::Isometry);
+        // Where odometry may have gone astray all the way in between, a node belongs to the nearer end only.
+        const bool apart = 2 * of_newest[at(node)].metres > jump;
+        std::vector<graph::PlacedView> older, newer;
+        for (int i = 0; i < newest(); ++i) {
+            if (i == node) continue;
+            const double to_newest = of_newest[at(i)].metres, to_node = of_node[at(i)].metres;
+            if (to_newest < reach && (!apart || to_newest < to_node))
+                newer.push_back({&nodes_[at(i)].view, move * poses_[at(i)], to_newest});
+            if (to_node < reach && (!apart || to_newest >= to_node))
+                older.push_back({&nodes_[at(i)].view, poses_[at(i)], to_node});
+        }
+        return graph::compare_surroundings(older, newer, options).fit();
+    }
+
+    /// Joins the newest keyframe to earlier ones that saw the same.
+    void close_loops() {
+        if (newest() == 0 || options_.max_closures == 0) return;
+        const std::vector<Drift> drifts = drifts_from(newest());
         const graph::VerificationOptions options = verification_options(options_);
         int closed = 0;
         for (const int node : candidates(drifts)) {
@@ -403,10 +443,10 @@ class PoseGraph::Impl {
                 graph::verify(nodes_[at(node)].view, nodes_.back().view, options, seed);
             if (found.verdict != graph::Verdict::kAccepted) continue;
             if (!fits_odometry(node, drifts[at(node)], found.a_from_b)) continue;
+            if (!fits_surroundings(node, drifts, found.a_from_b, options)) continue;
             add_loop(node, found);
             ++closed;
         }
-        return closed > 0;
     }
 
     void add_loop(int node, const graph::Verification& found) {
@@ -418,7 +458,8 @@ class PoseGraph::Impl {
         loops_.push_back({nodes_[at(node)].id, nodes_.back().id, found.a_from_b, found.covariance,
                           found.matches, found.inliers, 1.0});
         link(node, newest(),
-             worst_sigmas(found.covariance) + Drift{options_.loop_sigma_m, options_.loop_sigma_rad}, false);
+             worst_sigmas(found.covariance) + Drift{options_.loop_sigma_m, options_.loop_sigma_rad}, false,
+             static_cast<int>(loops_.size()) - 1);
     }
 
     Components components() const {
@@ -438,19 +479,22 @@ class PoseGraph::Impl {
         const Pose correction = poses_[at(node)] * node_from_newest * poses_.back().inverse(Eigen::Isometry);
         const Pose move = carry_newest ? correction : correction.inverse(Eigen::Isometry);
         const int moving = carry_newest ? newest_part : part;
+        ++parts_moved_;
         for (int i = 0; i <= newest(); ++i) {
             if (parts.find(i) == moving) poses_[at(i)] = orthonormalised(move * poses_[at(i)]);
         }
     }
 
-    /// All edges; of the gaps only those across which nothing else ties the parts.
-    std::vector<graph::PoseEdge> all_edges(bool trusted_loops_only) const {
+    /// All edges; of the gaps only those across which nothing else ties the parts. To start with, loop
+    /// closures that counted as wrong are left out, and new ones are beyond doubt.
+    std::vector<graph::PoseEdge> all_edges(bool to_start_with) const {
         std::vector<graph::PoseEdge> edges = odometry_;
         Components parts(nodes_.size());
         for (const auto& edge : odometry_) parts.join(edge.from, edge.to);
         for (std::size_t i = 0; i < loop_edges_.size(); ++i) {
-            if (trusted_loops_only && loops_[i].weight < kDistrusted) continue;
+            if (to_start_with && loops_[i].weight < kDistrusted) continue;
             edges.push_back(loop_edges_[i]);
+            edges.back().robust = !to_start_with || i < loops_optimised_;
             parts.join(loop_edges_[i].from, loop_edges_[i].to);
         }
         for (const auto& gap : gaps_) {
@@ -459,21 +503,28 @@ class PoseGraph::Impl {
         return edges;
     }
 
-    /// A loop closure far from the present poses is first trusted fully, so that it can pull against the
-    /// kernel; then the kernel lets go of what the rest contradicts.
-    void optimise(bool closed) {
-        const bool far =
-            closed && std::any_of(loop_edges_.begin(), loop_edges_.end(), [&](const auto& edge) {
-                return edge.to == newest() &&
-                       graph::edge_error(edge, poses_[at(edge.from)], poses_[at(edge.to)]).norm() >
-                           options_.kernel_width;
-            });
-        if (far) graph::optimise(poses_, all_edges(true), 0, {0.0, options_.max_iterations});
-        graph::optimise(poses_, all_edges(false), 0, {options_.kernel_width, options_.max_iterations},
-                        &landmarks_.landmarks(), landmarks_.shared());
+    void optimise() {
+        const std::unique_ptr<GraphOptimisation::Work> work = prepare();
+        work->run();
+        take(*work);
+    }
+
+    /// Takes the poses and landmarks that an optimisation found; later ones follow those they hang on.
+    void take(const GraphOptimisation::Work& work) {
+        if (work.parts_moved != parts_moved_) {
+            due_ = true;
+            return;
+        }
+        std::vector<Pose> moves;  // of the world, about each node
+        for (std::size_t i = 0; i < poses_.size(); ++i) {
+            const Pose before = poses_[i];
+            poses_[i] =
+                i < work.poses.size() ? work.poses[i] : orthonormalised(moves[at(hangs_on_[i])] * poses_[i]);
+            moves.push_back(poses_[i] * before.inverse(Eigen::Isometry));
+        }
+        loops_applied_ = work.loops;
+        landmarks_.follow(work.landmarks, moves);
         landmarks_.merge();
-        since_optimised_ = 0;
-        disagreement_ = 0;
         for (std::size_t i = 0; i < loops_.size(); ++i) {
             const graph::PoseEdge& edge = loop_edges_[i];
             const double error = graph::edge_error(edge, poses_[at(edge.from)], poses_[at(edge.to)]).norm();
@@ -507,14 +558,20 @@ class PoseGraph::Impl {
             trajectory_.keyframes[i].world_from_camera = poses_[i];
     }
 
+    static constexpr double kFar = 2;            // kernel widths: where a loop closure can no longer pull
     static constexpr double kDistrusted = 0.05;  // weight of a loop closure that counts as wrong
 
     GraphOptions options_;
     graph::Landmarks landmarks_;
     double disagreement_ = 0;          ///< of planes since the last optimisation, standard deviations
     std::size_t since_optimised_ = 0;  ///< keyframes since the last optimisation
+    std::size_t loops_optimised_ = 0;  ///< of loop_edges_, how many the last optimisation knew
+    int loops_applied_ = 0;            ///< of loop_edges_, how many the poses follow
+    bool due_ = false;                 ///< an optimisation
+    int parts_moved_ = 0;              ///< how often a part was moved as a whole
     std::vector<Node> nodes_;
-    std::vector<Pose> poses_;  ///< world_from_camera of each node
+    std::vector<Pose> poses_;    ///< world_from_camera of each node
+    std::vector<int> hangs_on_;  ///< node that each was placed by; -1 for the first
     std::vector<std::vector<Link>> links_;
     std::unordered_map<int, int> index_of_;  ///< node of a keyframe's id
     std::vector<graph::PoseEdge> odometry_, loop_edges_, gaps_;
@@ -524,6 +581,37 @@ class PoseGraph::Impl {
     KeyframeTrajectory trajectory_;
 };
 
+std::unique_ptr<GraphOptimisation::Work> PoseGraph::Impl::prepare() {
+    auto work = std::make_unique<GraphOptimisation::Work>();
+    work->edges = all_edges(false);
+    if (worst_new_loop() > kFar * options_.kernel_width) {
+        work->trusting_edges = all_edges(true);
+        work->new_loops.assign(loop_edges_.begin() + static_cast<std::ptrdiff_t>(loops_optimised_),
+                               loop_edges_.end());
+    }
+    work->poses = poses_;
+    work->landmarks = landmarks_.landmarks();
+    work->sightings = landmarks_.shared();
+    work->kernel_width = options_.kernel_width;
+    work->max_iterations = options_.max_iterations;
+    work->loops = static_cast<int>(loops_.size());
+    work->parts_moved = parts_moved_;
+    loops_optimised_ = loop_edges_.size();
+    since_optimised_ = 0;
+    disagreement_ = 0;
+    due_ = false;
+    return work;
+}
+
+GraphOptimisation::GraphOptimisation(std::unique_ptr<Work> work) : work_(std::move(work)) {}
+GraphOptimisation::~GraphOptimisation() = default;
+GraphOptimisation::GraphOptimisation(GraphOptimisation&&) noexcept = default;
+GraphOptimisation& GraphOptimisation::operator=(GraphOptimisation&&) noexcept = default;
+
+void GraphOptimisation::run() {
+    work_->run();
+}
+
 PoseGraph::PoseGraph(GraphOptions options) : impl_(std::make_unique<Impl>(std::move(options))) {}
 PoseGraph::~PoseGraph() = default;
 PoseGraph::PoseGraph(PoseGraph&&) noexcept = default;
@@ -531,6 +619,22 @@ PoseGraph& PoseGraph::operator=(PoseGraph&&) noexcept = default;
 
 const KeyframeTrajectory& PoseGraph::add(const Keyframe& keyframe) {
     return impl_->add(keyframe);
+}
+
+const KeyframeTrajectory& PoseGraph::insert(const Keyframe& keyframe) {
+    return impl_->insert(keyframe);
+}
+
+bool PoseGraph::due() const {
+    return impl_->due();
+}
+
+GraphOptimisation PoseGraph::prepare() {
+    return GraphOptimisation(impl_->prepare());
+}
+
+const KeyframeTrajectory& PoseGraph::apply(const GraphOptimisation& optimisation) {
+    return impl_->apply(optimisation.work());
 }
 
 const KeyframeTrajectory& PoseGraph::finish() {

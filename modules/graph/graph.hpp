@@ -31,6 +31,9 @@ struct GraphOptions {
     double min_visible_ratio = 0.12;   ///< inliers, of the points that both views should see
     double max_contradiction = 0.25;   ///< share of plane samples that the other view saw through
 
+    double surroundings_from_m = 0.3;  ///< a loop closure that moves the newest keyframe by more (metres plus
+                                       ///< radians) must also fit what was seen around it
+
     double drift_per_metre = 0.05;   ///< bound of odometry's drift: metres a metre of path
     double drift_per_radian = 0.05;  ///< metres and radians a radian of turning
     double drift_base_m = 0.2;       ///< metres, on top
@@ -69,6 +72,25 @@ struct LoopClosure {
         1;  ///< in the last optimisation, 0 to 1: near 0 when the rest of the graph contradicts it
 };
 
+/// One optimisation of a PoseGraph as it was when prepared, with a copy of all that it needs: run() may run
+/// on another thread while the graph grows.
+class GraphOptimisation {
+  public:
+    struct Work;
+
+    explicit GraphOptimisation(std::unique_ptr<Work> work);
+    ~GraphOptimisation();
+    GraphOptimisation(GraphOptimisation&&) noexcept;
+    GraphOptimisation& operator=(GraphOptimisation&&) noexcept;
+
+    /// Call it once; then give it back to PoseGraph::apply().
+    void run();
+    const Work& work() const { return *work_; }
+
+  private:
+    std::unique_ptr<Work> work_;
+};
+
 /// Keyframes, the edges between them, and the poses that fit all edges best. World is the odom frame of the
 /// first keyframe, and the first keyframe never moves. The same keyframes in the same order give the same
 /// result.
@@ -87,6 +109,15 @@ class PoseGraph {
     /// none: like after a loss, the keyframe is placed by odom_from_camera until a loop closure ties it to
     /// the others.
     const KeyframeTrajectory& add(const Keyframe& keyframe);
+
+    /// add() in steps, for a process that must not wait: insert() does all but optimise, and due() says
+    /// whether to. Keyframes may be inserted between prepare() and apply(), one optimisation at a time: they
+    /// follow the ones they hang on. What apply() makes of a graph of which a part was moved meanwhile (the
+    /// first tie to it was found) is nothing; due() then asks again.
+    const KeyframeTrajectory& insert(const Keyframe& keyframe);
+    bool due() const;
+    GraphOptimisation prepare();
+    const KeyframeTrajectory& apply(const GraphOptimisation& optimisation);
 
     /// Optimises once more, with all that is known; for the end of a run.
     const KeyframeTrajectory& finish();

@@ -32,6 +32,8 @@ void add_flags(Flags& flags, GraphOptions& options, const std::string& prefix) {
               "inliers, of the points that both views should see");
     flags.add("max-contradiction", options.max_contradiction,
               "share of plane samples that the other view saw through");
+    flags.add("surroundings-from-m", options.surroundings_from_m,
+              "a loop closure that moves the newest keyframe by more must also fit what was seen around it");
     flags.add("drift-per-metre", options.drift_per_metre,
               "bound of odometry's drift: metres a metre of path");
     flags.add("drift-per-radian", options.drift_per_radian, "metres and radians a radian of turning");

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "graph/graph_shell.hpp"
 
+#include <chrono>
+
 #include "messages/channels.hpp"
 #include "messages/convert.hpp"
 #include "messages/decode.hpp"
 
 namespace planemap {
 
-GraphShell::GraphShell(Bus& bus, const GraphOptions& options) : bus_(bus), graph_(options) {
+GraphShell::GraphShell(Bus& bus, const GraphOptions& options, Optimising optimising)
+    : bus_(bus), optimising_(optimising), graph_(options) {
     // Keyframes are few and each counts: a long queue.
     bus_.subscribe(channels::kKeyframe, status_.guard([this](const RawMessage& m) { on_keyframe(m); }), 256);
 }
@@ -18,14 +21,41 @@ void GraphShell::on_keyframe(const RawMessage& message) {
     status_.received(static_cast<std::uint32_t>(received.seq));
     try {
         const ModuleStatus::Work work(status_);
-        graph_.add(keyframe);
+        if (optimising_ == Optimising::kInHandler)
+            graph_.add(keyframe);
+        else
+            graph_.insert(keyframe);
     } catch (const std::invalid_argument& error) {
         throw MessageError(error.what());
     }
     publish();
+    start_if_due();
+}
+
+void GraphShell::start_if_due() {
+    if (optimising_ != Optimising::kInBackground || running_ || !graph_.due()) return;
+    running_ = graph_.prepare();
+    done_ = std::async(std::launch::async, [this] { running_->run(); });
+}
+
+int GraphShell::poll() {
+    constexpr int kIdleMs = 100, kRunningMs = 10;
+    if (!running_) return kIdleMs;
+    if (done_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return kRunningMs;
+    done_.get();
+    graph_.apply(*running_);
+    running_.reset();
+    publish();
+    start_if_due();
+    return kIdleMs;
 }
 
 void GraphShell::finish() {
+    if (running_) {
+        done_.get();
+        graph_.apply(*running_);
+        running_.reset();
+    }
     if (graph_.trajectory().keyframes.empty()) return;
     {
         const ModuleStatus::Work work(status_);

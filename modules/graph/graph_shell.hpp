@@ -1,27 +1,42 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <future>
+#include <optional>
+
 #include "graph/graph.hpp"
 #include "messages/process.hpp"
 
 namespace planemap {
 
+/// Where the graph is optimised.
+enum class Optimising {
+    kInHandler,     ///< before the keyframe's trajectory is published: the same input gives the same output
+    kInBackground,  ///< on another thread; messages do not wait, and the result is published when it is there
+};
+
 /// PLANEMAP_KEYFRAME to PLANEMAP_TRAJECTORY.
 class GraphShell : public Shell {
   public:
-    GraphShell(Bus& bus, const GraphOptions& options);
+    GraphShell(Bus& bus, const GraphOptions& options, Optimising optimising = Optimising::kInHandler);
 
     ModuleStatus& status() override { return status_; }
-    /// Optimises once more and publishes the result.
+    /// Publishes what the background has finished, and gives it what is due.
+    int poll() override;
+    /// Waits for the background, optimises once more and publishes the result.
     void finish() override;
     const PoseGraph& graph() const { return graph_; }
 
   private:
     void on_keyframe(const RawMessage& message);
+    void start_if_due();
     void publish();
 
     Bus& bus_;
+    Optimising optimising_;
     PoseGraph graph_;
+    std::optional<GraphOptimisation> running_;  ///< owned by the background until done_ is ready
+    std::future<void> done_;
     ModuleStatus status_{"graph"};
     std::int32_t seq_ = 0;
 };

@@ -87,6 +87,19 @@ double Landmarks::add(int node, const std::vector<PlanarRegion>& regions, const 
     return worst;
 }
 
+void Landmarks::follow(const std::vector<Landmark>& optimised, const std::vector<Pose>& world_moves) {
+    for (std::size_t i = 0; i < optimised.size(); ++i) landmarks_[i].plane = optimised[i].plane;
+    std::size_t next = optimised.size();
+    for (const Sighting& sighting : sightings_) {  // the first sighting of a landmark founded it
+        if (next == landmarks_.size()) break;
+        if (static_cast<std::size_t>(sighting.landmark) != next) continue;
+        const Pose& move = world_moves[static_cast<std::size_t>(sighting.node)];
+        landmarks_[next].plane = move * landmarks_[next].plane;
+        landmarks_[next].box = move * landmarks_[next].box;
+        ++next;
+    }
+}
+
 void Landmarks::merge() {
     for (std::size_t i = 0; i < landmarks_.size(); ++i) {
         if (landmarks_[i].merged_into >= 0) continue;

@@ -48,6 +48,10 @@ class Landmarks {
     /// largest whitened error of the new sightings.
     double add(int node, const std::vector<PlanarRegion>& regions, const Pose& world_from_camera);
 
+    /// Takes the planes of landmarks that an optimisation moved. Landmarks that it did not know yet move with
+    /// the node that founded them: world_moves is how the world moved about each node.
+    void follow(const std::vector<Landmark>& optimised, const std::vector<Pose>& world_moves);
+
     /// Merges landmarks that coincide by the same rules; call it after the poses moved.
     void merge();
 

@@ -4,54 +4,103 @@
 #include <ceres/ceres.h>
 
 #include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <unordered_set>
 
 namespace planemap::graph {
 
 namespace {
 
 constexpr double kSightingKernel = 2.0;  // standard deviations: a wrong sighting must not bend the graph
+constexpr double kStillStep = 5e-4;      // metres and radians, RMS over the nodes: nothing moved any more
+constexpr std::ptrdiff_t kLoopsSolvedDirectly = 300;
+constexpr std::ptrdiff_t kLoopsKept = 40;  // in the sparse part that is factored when there are more
 
-/// A node as Ceres sees it: quaternion (x, y, z, w), then translation.
+/// J with exp(w + x) = exp(w) exp(J x) for small x.
+Eigen::Matrix3d so3_right_jacobian(const Eigen::Vector3d& w) {
+    const double angle = w.norm();
+    const Eigen::Matrix3d s = skew(w);
+    if (angle < 1e-4) return Eigen::Matrix3d::Identity() - 0.5 * s + s * s / 6;
+    return Eigen::Matrix3d::Identity() - (1 - std::cos(angle)) / (angle * angle) * s +
+           (angle - std::sin(angle)) / (angle * angle * angle) * s * s;
+}
+
+/// A node as Ceres sees it: how far it has moved from where it started, added to the translation and turned
+/// about its own axes. What the residuals need of it is worked out once an evaluation, not once a residual.
 struct Node {
-    std::array<double, 4> rotation{};
-    std::array<double, 3> translation{};
+    Pose start = Pose::Identity();
+    std::array<double, 6> change{};
+    Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+    Eigen::Vector3d translation = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  ///< from change[3..5] to a turn about present axes
+
+    explicit Node(const Pose& pose) : start(pose) { update(); }
+    void update() {
+        const Eigen::Map<const Twist> x(change.data());
+        rotation = start.linear() * so3_exp(x.tail<3>());
+        translation = start.translation() + x.head<3>();
+        turn = so3_right_jacobian(x.tail<3>());
+    }
+    Pose pose() const {
+        Pose pose = Pose::Identity();
+        pose.linear() = rotation;
+        pose.translation() = translation;
+        return orthonormalised(pose);
+    }
 };
 
-Eigen::Quaterniond positive(Eigen::Quaterniond q) {
-    q.normalize();
-    if (q.w() < 0) q.coeffs() = -q.coeffs();
-    return q;
-}
+/// The error of an edge before whitening, and what its derivatives need.
+struct RawError {
+    Eigen::Vector3d offset;        ///< from `from` to `to`, in the frame of `from`
+    Eigen::Matrix3d from_from_to;  ///< rotation by the nodes' poses
+    Eigen::Quaterniond q;          ///< of the error's rotation, w >= 0
+    Twist error;
 
-template <typename T>
-Eigen::Matrix<T, 6, 1> raw_error(const Pose& from_from_to, const Eigen::Quaternion<T>& q_from,
-                                 const Eigen::Matrix<T, 3, 1>& t_from, const Eigen::Quaternion<T>& q_to,
-                                 const Eigen::Matrix<T, 3, 1>& t_to) {
-    const Eigen::Quaternion<T> measured = Eigen::Quaterniond(from_from_to.linear()).cast<T>();
-    const Eigen::Matrix<T, 3, 1> measured_t = from_from_to.translation().cast<T>();
-    Eigen::Quaternion<T> q = measured.conjugate() * (q_from.conjugate() * q_to);
-    if (q.w() < T(0)) q.coeffs() = -q.coeffs();
-    Eigen::Matrix<T, 6, 1> error;
-    error.template head<3>() = measured.conjugate() * (q_from.conjugate() * (t_to - t_from) - measured_t);
-    error.template tail<3>() = T(2) * q.vec();
-    return error;
-}
+    RawError(const Pose& measured, const Eigen::Matrix3d& r_from, const Eigen::Vector3d& t_from,
+             const Eigen::Matrix3d& r_to, const Eigen::Vector3d& t_to)
+        : offset(r_from.transpose() * (t_to - t_from)),
+          from_from_to(r_from.transpose() * r_to),
+          q(Eigen::Matrix3d(measured.linear().transpose() * from_from_to)) {
+        if (q.w() < 0) q.coeffs() = -q.coeffs();
+        error << measured.linear().transpose() * (offset - measured.translation()), 2 * q.vec();
+    }
+};
 
-struct EdgeCost {
-    PoseEdge edge;
+class EdgeCost : public ceres::SizedCostFunction<6, 6, 6> {
+  public:
+    EdgeCost(const PoseEdge& edge, const Node& from, const Node& to) : edge_(edge), from_(from), to_(to) {}
 
-    template <typename T>
-    bool operator()(const T* rotation_from, const T* translation_from, const T* rotation_to,
-                    const T* translation_to, T* residual) const {
-        using Vector = Eigen::Matrix<T, 3, 1>;
-        Eigen::Map<Eigen::Matrix<T, 6, 1>> out(residual);
-        out =
-            edge.sqrt_information.cast<T>() *
-            raw_error<T>(edge.from_from_to, Eigen::Quaternion<T>(rotation_from),
-                         Vector(Eigen::Map<const Vector>(translation_from)),
-                         Eigen::Quaternion<T>(rotation_to), Vector(Eigen::Map<const Vector>(translation_to)));
+    bool Evaluate(double const* const* /*changes*/, double* residuals, double** jacobians) const override {
+        const RawError raw(edge_.from_from_to, from_.rotation, from_.translation, to_.rotation,
+                           to_.translation);
+        Eigen::Map<Twist>{residuals} = edge_.sqrt_information * raw.error;
+        if (jacobians == nullptr) return true;
+        const Eigen::Matrix3d to_measured = edge_.from_from_to.linear().transpose();
+        const Eigen::Matrix3d by_world = to_measured * from_.rotation.transpose();
+        const Eigen::Matrix3d by_turn = raw.q.w() * Eigen::Matrix3d::Identity() + skew(raw.q.vec());
+        using Jacobian = Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>;
+        Matrix6d jacobian = Matrix6d::Zero();
+        if (jacobians[0] != nullptr) {
+            jacobian.topLeftCorner<3, 3>() = -by_world;
+            jacobian.topRightCorner<3, 3>() = to_measured * skew(raw.offset) * from_.turn;
+            jacobian.bottomRightCorner<3, 3>() = -by_turn * raw.from_from_to.transpose() * from_.turn;
+            Jacobian{jacobians[0]} = edge_.sqrt_information * jacobian;
+        }
+        if (jacobians[1] != nullptr) {
+            jacobian.topLeftCorner<3, 3>() = by_world;
+            jacobian.topRightCorner<3, 3>().setZero();
+            jacobian.bottomRightCorner<3, 3>() = by_turn * to_.turn;
+            Jacobian{jacobians[1]} = edge_.sqrt_information * jacobian;
+        }
         return true;
     }
+
+  private:
+    const PoseEdge& edge_;
+    const Node &from_, &to_;
 };
 
 /// A landmark as Ceres sees it: how its plane turns about two axes and shifts, at a reference point on it.
@@ -70,39 +119,87 @@ struct PlaneNode {
         const Eigen::Vector3d n = (normal + change[0] * u + change[1] * v).normalized();
         return {n, -n.dot(point) - change[2]};
     }
-};
-
-struct SightingCost {
-    Sighting sighting;
-    const PlaneNode* plane;
-
-    template <typename T>
-    bool operator()(const T* rotation, const T* translation, const T* change, T* residual) const {
-        using Vector = Eigen::Matrix<T, 3, 1>;
-        const Eigen::Quaternion<T> q(rotation);
-        const Vector t = Eigen::Map<const Vector>(translation);
-        const Vector n =
-            (plane->normal.cast<T>() + change[0] * plane->u.cast<T>() + change[1] * plane->v.cast<T>())
-                .normalized();
-        for (int i = 0; i < 4; ++i) {
-            const Vector p = q * sighting.points_camera[static_cast<std::size_t>(i)].template cast<T>() + t;
-            residual[i] = T(sighting.sqrt_weight) * (n.dot(p - plane->point.cast<T>()) - change[2]);
-        }
-        return true;
+    /// How the normal moves with change[0] and change[1].
+    Eigen::Matrix<double, 3, 2> normal_jacobian() const {
+        const Eigen::Vector3d sum = normal + change[0] * u + change[1] * v;
+        const Eigen::Vector3d n = sum.normalized();
+        Eigen::Matrix<double, 3, 2> jacobian;
+        jacobian << u - n * n.dot(u), v - n * n.dot(v);
+        return jacobian / sum.norm();
     }
 };
 
-Node to_node(const Pose& pose) {
-    Node node;
-    Eigen::Map<Eigen::Vector4d>(node.rotation.data()) = positive(Eigen::Quaterniond(pose.linear())).coeffs();
-    Eigen::Map<Eigen::Vector3d>(node.translation.data()) = pose.translation();
-    return node;
-}
+/// The four points of a sighting lie on the plane. Their squared distances add up to those of three terms,
+/// the centre's and those of the two half axes.
+class SightingCost : public ceres::SizedCostFunction<3, 6, 3> {
+  public:
+    SightingCost(const Sighting& sighting, const Node& node, const PlaneNode& plane)
+        : node_(node), plane_(plane) {
+        const auto& p = sighting.points_camera;
+        centre_ = (p[0] + p[1] + p[2] + p[3]) / 4;
+        terms_.col(0) = 2 * sighting.sqrt_weight * centre_;
+        terms_.col(1) = std::numbers::sqrt2 * sighting.sqrt_weight * (p[0] - p[2]) / 2;
+        terms_.col(2) = std::numbers::sqrt2 * sighting.sqrt_weight * (p[1] - p[3]) / 2;
+        weight_ = 2 * sighting.sqrt_weight;
+    }
 
-Pose to_pose(const Node& node) {
-    return make_pose(Eigen::Map<const Eigen::Vector3d>(node.translation.data()),
-                     Eigen::Quaterniond(Eigen::Map<const Eigen::Vector4d>(node.rotation.data())));
-}
+    bool Evaluate(double const* const* /*changes*/, double* residuals, double** jacobians) const override {
+        const Plane plane = plane_.plane();
+        const Eigen::Vector3d normal_camera = node_.rotation.transpose() * plane.normal;
+        Eigen::Map<Eigen::Vector3d> error(residuals);
+        error = terms_.transpose() * normal_camera;
+        error[0] += weight_ * (plane.normal.dot(node_.translation) + plane.d);
+        if (jacobians == nullptr) return true;
+        if (jacobians[0] != nullptr) {
+            Eigen::Map<Eigen::Matrix<double, 3, 6, Eigen::RowMajor>> by_node(jacobians[0]);
+            by_node.setZero();
+            by_node.topLeftCorner<1, 3>() = weight_ * plane.normal.transpose();
+            for (int i = 0; i < 3; ++i)
+                by_node.block<1, 3>(i, 3) = terms_.col(i).cross(normal_camera).transpose() * node_.turn;
+        }
+        if (jacobians[1] != nullptr) {
+            Eigen::Map<Eigen::Matrix3d> by_plane_transposed(jacobians[1]);
+            Eigen::Matrix3d points_world = node_.rotation * terms_;
+            points_world.col(0) += weight_ * (node_.translation - plane_.point);
+            by_plane_transposed.topRows<2>() = plane_.normal_jacobian().transpose() * points_world;
+            by_plane_transposed.row(2) << -weight_, 0, 0;
+        }
+        return true;
+    }
+
+  private:
+    const Node& node_;
+    const PlaneNode& plane_;
+    Eigen::Matrix3d terms_;  ///< a column each, weighted: centre, half axes; camera frame
+    Eigen::Vector3d centre_;
+    double weight_ = 0;  ///< of the centre's distance, 1/metres
+};
+
+/// Brings what the residuals share up to date before each evaluation.
+class UpdateNodes : public ceres::EvaluationCallback {
+  public:
+    explicit UpdateNodes(std::vector<Node>& nodes) : nodes_(nodes) {}
+    void PrepareForEvaluation(bool /*jacobians*/, bool moved) override {
+        if (!moved) return;
+        for (Node& node : nodes_) node.update();
+    }
+
+  private:
+    std::vector<Node>& nodes_;
+};
+
+/// Ends the iterations when they move nodes by less than anybody can see.
+class StopWhenStill : public ceres::IterationCallback {
+  public:
+    explicit StopWhenStill(double step) : step_(step) {}
+    ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
+        const bool still = summary.iteration > 0 && summary.step_is_successful && summary.step_norm < step_;
+        return still ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+    }
+
+  private:
+    double step_;
+};
 
 ceres::Solver::Options solver_options(const OptimisationOptions& options) {
     ceres::Solver::Options solver;
@@ -112,19 +209,31 @@ ceres::Solver::Options solver_options(const OptimisationOptions& options) {
         solver.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
     solver.num_threads = 1;
     solver.max_num_iterations = options.max_iterations;
-    solver.function_tolerance = 1e-6;
+    solver.initial_trust_region_radius = 1e8;  // the start is a good one: steps of Gauss-Newton at once
+    solver.function_tolerance = 1e-5;
     solver.parameter_tolerance = 1e-9;
     solver.logging_type = ceres::SILENT;
     return solver;
 }
 
+/// Many loop closures fill the factor of the normal equations. Then only those of a sparse part of the graph
+/// are factored, and precondition conjugate gradients over all of it (Dellaert et al. 2010, subgraph
+/// preconditioning).
+void solve_by_conjugate_gradients(ceres::Solver::Options& solver,
+                                  std::unordered_set<ceres::ResidualBlockId> sparse) {
+    solver.linear_solver_type = ceres::CGNR;
+    solver.preconditioner_type = ceres::SUBSET;
+    solver.residual_blocks_for_subset_preconditioner = std::move(sparse);
+    solver.max_linear_solver_iterations = 100;
+}
+
 }  // namespace
 
 Twist edge_error(const PoseEdge& edge, const Pose& world_from_from, const Pose& world_from_to) {
-    return edge.sqrt_information *
-           raw_error<double>(edge.from_from_to, Eigen::Quaterniond(world_from_from.linear()),
-                             world_from_from.translation(), Eigen::Quaterniond(world_from_to.linear()),
-                             world_from_to.translation());
+    return edge.sqrt_information * RawError(edge.from_from_to, world_from_from.linear(),
+                                            world_from_from.translation(), world_from_to.linear(),
+                                            world_from_to.translation())
+                                       .error;
 }
 
 Matrix6d sqrt_information(const Matrix6d& covariance, double add_m, double add_rad, double unknown) {
@@ -146,53 +255,53 @@ OptimisationReport optimise(std::vector<Pose>& poses, const std::vector<PoseEdge
                             const OptimisationOptions& options, std::vector<Landmark>* landmarks,
                             const std::vector<Sighting>& sightings) {
     if (poses.empty() || edges.empty()) return {true, 0, 0, 0};
-    std::vector<Node> nodes;
-    nodes.reserve(poses.size());
-    for (const Pose& pose : poses) nodes.push_back(to_node(pose));
+    std::vector<Node> nodes(poses.begin(), poses.end());
+    std::vector<PlaneNode> planes;
+    if (landmarks != nullptr) planes = std::vector<PlaneNode>(landmarks->begin(), landmarks->end());
 
-    ceres::Problem::Options shared;
-    shared.manifold_ownership = shared.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    ceres::EigenQuaternionManifold manifold;
+    UpdateNodes update(nodes);
     ceres::CauchyLoss kernel(options.kernel_width > 0 ? options.kernel_width : 1.0);
+    ceres::CauchyLoss sighting_kernel(kSightingKernel);
+    ceres::Problem::Options shared;
+    shared.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    shared.evaluation_callback = &update;
     ceres::Problem problem(shared);
-    for (Node& node : nodes) {
-        problem.AddParameterBlock(node.rotation.data(), 4, &manifold);
-        problem.AddParameterBlock(node.translation.data(), 3);
-    }
-    for (const PoseEdge& edge : edges) {
+    const auto loops =
+        std::count_if(edges.begin(), edges.end(), [](const auto& edge) { return edge.robust; });
+    std::unordered_set<ceres::ResidualBlockId> sparse;
+    for (std::ptrdiff_t loop = 0; const PoseEdge& edge : edges) {
         Node &from = nodes[static_cast<std::size_t>(edge.from)],
              &to = nodes[static_cast<std::size_t>(edge.to)];
-        problem.AddResidualBlock(new ceres::AutoDiffCostFunction<EdgeCost, 6, 4, 3, 4, 3>(new EdgeCost{edge}),
-                                 edge.robust && options.kernel_width > 0 ? &kernel : nullptr,
-                                 from.rotation.data(), from.translation.data(), to.rotation.data(),
-                                 to.translation.data());
+        const auto residual = problem.AddResidualBlock(
+            new EdgeCost(edge, from, to), edge.robust && options.kernel_width > 0 ? &kernel : nullptr,
+            from.change.data(), to.change.data());
+        if (!edge.robust || loop++ % (loops / kLoopsKept + 1) == 0) sparse.insert(residual);
     }
-    std::vector<PlaneNode> planes;
-    if (landmarks != nullptr) {
-        for (const Landmark& landmark : *landmarks) planes.emplace_back(landmark);
-    }
-    ceres::CauchyLoss sighting_kernel(kSightingKernel);
     for (const Sighting& sighting : sightings) {
         PlaneNode& plane = planes.at(static_cast<std::size_t>(sighting.landmark));
         Node& node = nodes[static_cast<std::size_t>(sighting.node)];
-        problem.AddResidualBlock(
-            new ceres::AutoDiffCostFunction<SightingCost, 4, 4, 3, 3>(new SightingCost{sighting, &plane}),
-            &sighting_kernel, node.rotation.data(), node.translation.data(), plane.change.data());
+        sparse.insert(problem.AddResidualBlock(new SightingCost(sighting, node, plane), &sighting_kernel,
+                                               node.change.data(), plane.change.data()));
     }
-    Node& anchor = nodes[static_cast<std::size_t>(fixed)];
-    problem.SetParameterBlockConstant(anchor.rotation.data());
-    problem.SetParameterBlockConstant(anchor.translation.data());
+    double* const anchor = nodes[static_cast<std::size_t>(fixed)].change.data();
+    if (problem.HasParameterBlock(anchor)) problem.SetParameterBlockConstant(anchor);
 
+    StopWhenStill stop(kStillStep * std::sqrt(static_cast<double>(nodes.size())));
+    ceres::Solver::Options solver = solver_options(options);
+    solver.callbacks.push_back(&stop);
+    if (loops > kLoopsSolvedDirectly) solve_by_conjugate_gradients(solver, std::move(sparse));
     ceres::Solver::Summary summary;
-    ceres::Solve(solver_options(options), &problem, &summary);
+    ceres::Solve(solver, &problem, &summary);
     if (summary.IsSolutionUsable()) {
         for (std::size_t i = 0; i < poses.size(); ++i) {
-            if (static_cast<int>(i) != fixed) poses[i] = to_pose(nodes[i]);
+            nodes[i].update();  // the last step tried may not be the one taken
+            if (static_cast<int>(i) != fixed) poses[i] = nodes[i].pose();
         }
         for (std::size_t i = 0; i < planes.size(); ++i) (*landmarks)[i].plane = planes[i].plane();
     }
-    return {summary.termination_type == ceres::CONVERGENCE, static_cast<int>(summary.iterations.size()),
-            summary.initial_cost, summary.final_cost};
+    const bool converged =
+        summary.termination_type == ceres::CONVERGENCE || summary.termination_type == ceres::USER_SUCCESS;
+    return {converged, static_cast<int>(summary.iterations.size()), summary.initial_cost, summary.final_cost};
 }
 
 }  // namespace planemap::graph

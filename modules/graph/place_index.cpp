@@ -43,9 +43,23 @@ PlaceIndex::Words PlaceIndex::words(std::span<const Descriptor> descriptors) con
 void PlaceIndex::add(std::span<const Descriptor> descriptors) {
     const Words mine = words(descriptors);
     for (std::size_t table = 0; table < kTables; ++table) {
-        for (const auto word : mine[table]) places_of_[table][word].push_back(size_);
+        for (const auto word : mine[table]) {
+            Listing& listing = places_of_[table][word];
+            if (++listing.count <= static_cast<std::int32_t>(kMostPlaces))
+                listing.places.push_back(size_);
+            else
+                std::vector<std::int32_t>().swap(listing.places);
+        }
     }
     ++size_;
+}
+
+std::size_t PlaceIndex::entries() const {
+    std::size_t entries = 0;
+    for (const auto& table : places_of_) {
+        for (const Listing& listing : table) entries += listing.places.size();
+    }
+    return entries;
 }
 
 std::vector<double> PlaceIndex::scores(std::span<const Descriptor> descriptors) const {
@@ -55,11 +69,11 @@ std::vector<double> PlaceIndex::scores(std::span<const Descriptor> descriptors) 
     double total = 0;
     for (std::size_t table = 0; table < kTables; ++table) {
         for (const auto word : mine[table]) {
-            const auto& places = places_of_[table][word];
-            const double weight = std::log1p(size_ / (1.0 + static_cast<double>(places.size())));
+            const Listing& listing = places_of_[table][word];
+            const double weight = std::log1p(size_ / (1.0 + listing.count));
             total += weight;
-            if (places.size() > too_common) continue;
-            for (const auto place : places) scores[static_cast<std::size_t>(place)] += weight;
+            if (listing.places.size() > too_common) continue;
+            for (const auto place : listing.places) scores[static_cast<std::size_t>(place)] += weight;
         }
     }
     for (double& score : scores) score /= std::max(total, 1e-12);

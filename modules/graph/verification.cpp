@@ -242,12 +242,13 @@ Refined refine(const View& a, const View& b, const std::vector<PointPair>& pairs
 /// Pairs at the pose: each point of b with the point of a that is nearest in descriptor among those it lies
 /// on.
 std::vector<Match> match_at(const View& a, const View& b, const Pose& a_from_b,
-                            const VerificationOptions& options) {
+                            const VerificationOptions& options, double slack_m = 0) {
     std::vector<Match> matches;
     for (std::size_t j = 0; j < b.points.size(); ++j) {
         const Eigen::Vector3d p = a_from_b * b.points[j];
         if (!a.sees(p)) continue;
-        const double reach = kInlierSigmas * (options.noise.sigma(p.z()) + options.bearing_sigma * p.norm());
+        const double reach =
+            slack_m + kInlierSigmas * (options.noise.sigma(p.z()) + options.bearing_sigma * p.norm());
         Match best;
         int best_distance = options.matching.max_distance + 1;
         for (std::size_t i = 0; i < a.points.size(); ++i) {
@@ -348,7 +349,8 @@ double ray_cast(const View& view, const Eigen::Vector3d& p) {
 }
 
 /// Where samples of b's regions lie with respect to the surfaces that a saw.
-PlaneAgreement compare_one_way(const View& a, const View& b, const Pose& a_from_b, const DepthNoise& noise) {
+PlaneAgreement compare_one_way(const View& a, const View& b, const Pose& a_from_b, const DepthNoise& noise,
+                               double slack_m) {
     PlaneAgreement agreement;
     for (const PlanarRegion& region : b.regions) {
         for (const Eigen::Vector3d& sample : samples_of(region)) {
@@ -356,7 +358,7 @@ PlaneAgreement compare_one_way(const View& a, const View& b, const Pose& a_from_
             if (!a.sees(p)) continue;
             const double behind = (ray_cast(a, p) - 1) * p.z();
             if (!std::isfinite(behind)) continue;
-            const double margin = kPlaneDistance + 3 * noise.sigma(p.z() + std::max(0.0, behind));
+            const double margin = kPlaneDistance + slack_m + 3 * noise.sigma(p.z() + std::max(0.0, behind));
             if (behind > 2 * margin) ++agreement.contradict;
             if (std::abs(behind) < margin) ++agreement.agree;
         }
@@ -366,10 +368,19 @@ PlaneAgreement compare_one_way(const View& a, const View& b, const Pose& a_from_
 
 }  // namespace
 
-PlaneAgreement compare_planes(const View& a, const View& b, const Pose& a_from_b, const DepthNoise& noise) {
-    const PlaneAgreement of_b = compare_one_way(a, b, a_from_b, noise);
-    const PlaneAgreement of_a = compare_one_way(b, a, a_from_b.inverse(Eigen::Isometry), noise);
+PlaneAgreement compare_planes(const View& a, const View& b, const Pose& a_from_b, const DepthNoise& noise,
+                              double slack_m) {
+    const PlaneAgreement of_b = compare_one_way(a, b, a_from_b, noise, slack_m);
+    const PlaneAgreement of_a = compare_one_way(b, a, a_from_b.inverse(Eigen::Isometry), noise, slack_m);
     return {of_a.agree + of_b.agree, of_a.contradict + of_b.contradict};
+}
+
+PointAgreement compare_points(const View& a, const View& b, const Pose& a_from_b,
+                              const VerificationOptions& options, double slack_m) {
+    PointAgreement agreement;
+    for (const Eigen::Vector3d& p : b.points) agreement.visible += a.sees(a_from_b * p);
+    agreement.agree = static_cast<int>(match_at(a, b, a_from_b, options, slack_m).size());
+    return agreement;
 }
 
 Verification verify(const View& a, const View& b, const VerificationOptions& options, std::uint64_t seed) {

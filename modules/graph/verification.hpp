@@ -47,11 +47,20 @@ struct Verification {
 /// answer.
 Verification verify(const View& a, const View& b, const VerificationOptions& options, std::uint64_t seed);
 
-/// Shares of sample points of the regions of both views that agree with a surface of the other view, and that
-/// lie clearly before one (the other view saw through them).
+/// Numbers of sample points of the regions of both views that agree with a surface of the other view, and
+/// that lie clearly before one (the other view saw through them), if the pose errs by at most slack_m.
 struct PlaneAgreement {
     int agree = 0, contradict = 0;
 };
-PlaneAgreement compare_planes(const View& a, const View& b, const Pose& a_from_b, const DepthNoise& noise);
+PlaneAgreement compare_planes(const View& a, const View& b, const Pose& a_from_b, const DepthNoise& noise,
+                              double slack_m = 0);
+
+/// Of the points of b that a should see, how many lie within slack_m and noise of one of a with a like
+/// descriptor.
+struct PointAgreement {
+    int visible = 0, agree = 0;
+};
+PointAgreement compare_points(const View& a, const View& b, const Pose& a_from_b,
+                              const VerificationOptions& options, double slack_m);
 
 }  // namespace planemap::graph

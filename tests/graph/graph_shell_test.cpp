@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "graph/graph_shell.hpp"
 
+#include "graph/synthetic.hpp"
 #include "shell_fixture.hpp"
 
 namespace planemap {
@@ -29,6 +30,48 @@ TEST_F(GraphShellTest, PublishesTheTrajectoryAmongCorruptMessages) {
     ASSERT_EQ(last.keyframes.size(), 3u);
     EXPECT_NEAR(last.keyframes[2].world_from_camera.translation().x(), 0.2, 1e-9);
     EXPECT_EQ(shell.status().decode_error_count(), 3 * kCorrupt + 1);
+}
+
+TEST_F(GraphShellTest, TheBackgroundComesToTheSameTrajectory) {
+    test::Random random(1);
+    const auto room = test::make_room(random, Eigen::Vector3d::Zero(), 3.5, 3000);
+    const test::Walk walk = test::walk(room, test::square_loop(3, 12, 1.2), random);
+    PoseGraph alone;
+    GraphShell shell(bus_, {}, Optimising::kInBackground);
+    const auto trajectories = collect<trajectory_t>(channels::kTrajectory);
+    for (const Keyframe& keyframe : walk.keyframes) {
+        alone.add(keyframe);
+        shell.poll();
+        bus_.publish(channels::kKeyframe, to_message(keyframe, keyframe.id));
+        bus_.drain();
+        const KeyframeTrajectory newest = from_message(trajectories->back());
+        ASSERT_EQ(newest.keyframes.size(), static_cast<std::size_t>(keyframe.id) + 1)
+            << "a keyframe does not wait for the optimisation";
+        EXPECT_TRUE((newest.world_from_odom * keyframe.odom_from_camera)
+                        .isApprox(newest.keyframes.back().world_from_camera, 1e-6));
+    }
+    alone.finish();
+    shell.finish();
+    bus_.drain();
+    EXPECT_GT(shell.graph().trajectory().loop_closures, 3);
+    const KeyframeTrajectory last = from_message(trajectories->back());
+    for (std::size_t i = 0; i < walk.keyframes.size(); ++i) {
+        EXPECT_LT((last.keyframes[i].world_from_camera.translation() -
+                   alone.trajectory().keyframes[i].world_from_camera.translation())
+                      .norm(),
+                  0.05);
+    }
+}
+
+TEST_F(GraphShellTest, EndsWhileTheBackgroundIsAtWork) {
+    test::Random random(1);
+    const auto room = test::make_room(random, Eigen::Vector3d::Zero(), 3.5, 3000);
+    const test::Walk walk = test::walk(room, test::square_loop(3, 12, 1.1), random);
+    GraphShell shell(bus_, {}, Optimising::kInBackground);
+    for (const Keyframe& keyframe : walk.keyframes)
+        bus_.publish(channels::kKeyframe, to_message(keyframe, keyframe.id));
+    bus_.drain();
+    EXPECT_EQ(shell.graph().trajectory().keyframes.size(), walk.keyframes.size());
 }
 
 }  // namespace

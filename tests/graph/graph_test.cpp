@@ -157,6 +157,128 @@ TEST_F(GraphTest, TwoIdenticalRoomsAreNotJoined) {
     EXPECT_TRUE(all_true(graph, poses, 0.15, 0.04));
 }
 
+/// Two cells alike to the last feature, 3 m apart along a corridor of which each stretch looks different.
+struct TwinCells {
+    Random random{5};
+    std::vector<Landmark> cell = make_room(random, {0, 0, 1.6}, 1.3, 1200);
+    std::vector<Landmark> corridor;
+    std::vector<Pose> poses;
+    std::vector<double> cell_at;  ///< x of the cell that each pose looks into; NaN: it stands in the corridor
+
+    TwinCells() {
+        for (int i = 0; i < 4000; ++i)
+            corridor.push_back({{random.uniform(-6, 10), random.uniform(-1.4, 1.4), i % 2 == 0 ? 0.0 : -2.4},
+                                random_descriptor(random)});
+    }
+    void go(const Pose& to, int steps, double in_cell) {
+        for (int i = 1; i <= steps; ++i) {
+            poses.push_back(poses.empty() ? to : interpolate(poses.back(), to, 1.0 / (steps - i + 1)));
+            cell_at.push_back(in_cell);
+        }
+    }
+    /// Along the corridor to the door, in, once round, out backwards and on: the same way for each.
+    void visit(double x) {
+        go(looking({x - 1.5, 0, -1.2}, M_PI / 2), 6, kNan);
+        go(looking({x, 0, -1.2}, M_PI / 2), 5, kNan);
+        go(looking({x, 0, -1.2}, 0), 4, kNan);
+        go(looking({x, 0, 1.6}, 0), 8, x);
+        for (int i = 1; i <= 16; ++i) go(looking({x, 0, 1.6}, i * M_PI / 8), 1, x);
+        go(looking({x, 0, 0.2}, 0), 4, x);
+        go(looking({x, 0, -1.2}, 0), 4, x);
+        go(looking({x, 0, -1.2}, M_PI / 2), 4, kNan);
+    }
+    Walk walk() {
+        Walk walk = test::walk({}, poses, random);
+        for (std::size_t i = 0; i < poses.size(); ++i) {
+            Pose inside = poses[i];
+            if (!std::isnan(cell_at[i])) inside.translation().x() -= cell_at[i];
+            walk.keyframes[i].features = see(std::isnan(cell_at[i]) ? corridor : cell, inside, random, 300);
+        }
+        return walk;
+    }
+};
+
+/// Odometry is not asked: it may err by 10 m.
+PoseGraph without_odometry_check() {
+    GraphOptions options;
+    options.drift_base_m = 10;
+    return PoseGraph(options);
+}
+
+TEST_F(GraphTest, IdenticalRoomsThreeMetresApartAreNotJoinedWhateverOdometryAllows) {
+    TwinCells cells;
+    cells.visit(0);
+    cells.visit(3);
+    const Walk walk = cells.walk();
+    PoseGraph graph = without_odometry_check();
+    for (const Keyframe& keyframe : walk.keyframes) graph.add(keyframe);
+    EXPECT_GT(graph.loop_closures().size(), 4u) << "each room closes on itself";
+    EXPECT_TRUE(all_true(graph, cells.poses, 0.2, 0.06));
+}
+
+TEST_F(GraphTest, ARoomEnteredAgainIsJoinedHoweverFarOdometryErred) {
+    TwinCells cells;
+    cells.visit(0);
+    const std::size_t first = cells.poses.size();
+    cells.visit(0);
+    Walk walk = cells.walk();
+    walk.keyframes[first].previous_from_camera.translation().x() += 3;
+    PoseGraph graph = without_odometry_check();
+    for (const Keyframe& keyframe : walk.keyframes) graph.add(keyframe);
+    const auto joins = [&](const LoopClosure& loop) {
+        return loop.from_id < static_cast<int>(first) && loop.to_id >= static_cast<int>(first);
+    };
+    EXPECT_TRUE(std::any_of(graph.loop_closures().begin(), graph.loop_closures().end(), joins));
+    EXPECT_TRUE(all_true(graph, cells.poses, 0.2, 0.06));
+}
+
+TEST_F(GraphTest, AWallSeenFromBothEndsTiesALongRoom) {
+    // 16 m along a wall without any feature: odometry turns away, the wall does not.
+    std::vector<Pose> poses;
+    for (int i = 0; i <= 80; ++i) poses.push_back(looking({0.2 * i, 0, 0}, 0));
+    Odometry odometry;
+    odometry.bias << 0, 0, 0, 0, 0.002, 0;
+    Walk walk = test::walk({}, poses, random_, odometry);
+    for (Keyframe& keyframe : walk.keyframes) {
+        Pose camera_from_wall = Pose::Identity();
+        camera_from_wall.linear() = Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()).toRotationMatrix();
+        camera_from_wall.translation().z() = 2.0;
+        keyframe.regions.push_back(rectangle(camera_from_wall, 1.2, 0.9));
+    }
+    PoseGraph graph;
+    for (const Keyframe& keyframe : walk.keyframes) graph.add(keyframe);
+    graph.finish();
+    const Pose error = poses.back().inverse() * graph.trajectory().keyframes.back().world_from_camera;
+    const Pose drift = poses.back().inverse() * walk.keyframes.back().odom_from_camera;
+    EXPECT_GT(std::abs(drift.translation().z()), 0.5);
+    EXPECT_LT(std::abs(error.translation().z()), 0.1 * std::abs(drift.translation().z()));
+    EXPECT_LT(rotation_angle(error), 0.2 * rotation_angle(drift));
+}
+
+TEST_F(GraphTest, KeyframesThatComeDuringAnOptimisationFollowIt) {
+    const auto poses = square_loop(3, 12, 1.3);
+    const Walk walk = test::walk(room_, poses, random_);
+    PoseGraph graph;
+    std::size_t next = 0;
+    while (!graph.due()) graph.insert(walk.keyframes.at(next++));
+    GraphOptimisation optimisation = graph.prepare();
+    EXPECT_FALSE(graph.due());
+    const std::size_t prepared = next;
+    for (int i = 0; i < 5; ++i) graph.insert(walk.keyframes.at(next++));
+    const KeyframeTrajectory before = graph.trajectory();
+    optimisation.run();
+    const KeyframeTrajectory after = graph.apply(optimisation);
+    EXPECT_GT(after.revision, before.revision);
+    for (std::size_t i = prepared; i < next; ++i) {
+        const auto step = [&](const KeyframeTrajectory& trajectory) {
+            return Pose(trajectory.keyframes[i - 1].world_from_camera.inverse() *
+                        trajectory.keyframes[i].world_from_camera);
+        };
+        EXPECT_TRUE(step(after).isApprox(step(before), 1e-9));
+    }
+    expect_consistent(after);
+}
+
 TEST_F(GraphTest, OneFalseLoopDoesNotBendTheMap) {
     // A place 1.3 m aside looks like one seen before, within the bound of drift.
     const auto poses = square_loop(3, 12, 1.2);
@@ -167,7 +289,8 @@ TEST_F(GraphTest, OneFalseLoopDoesNotBendTheMap) {
     Keyframe& mistaken = walk.keyframes[30];
     mistaken.features = see(room_, poses[4], random_);
     GraphOptions options;
-    options.drift_base_m = options.drift_base_rad = 10;  // let it through the check against odometry
+    // Let it through the checks against odometry and against what else was seen.
+    options.drift_base_m = options.drift_base_rad = options.surroundings_from_m = 10;
     PoseGraph graph(options);
     for (const Keyframe& keyframe : walk.keyframes) graph.add(keyframe);
     EXPECT_FALSE(all_true(graph, poses, 0.3, 0.3)) << "the false one was accepted";

@@ -185,6 +185,13 @@ TEST(Optimisation, TwoThousandNodesOverTenLaps) {
     const OptimisationReport report = optimise(poses, edges, 0, {3.0, 30});
     EXPECT_TRUE(report.converged);
     EXPECT_LT(largest_error(poses, truth), largest_error(drifted, truth) / 5);
+    std::vector<Pose> from_truth = truth;
+    optimise(from_truth, edges, 0, {3.0, 30});
+    EXPECT_LT(largest_error(from_truth, poses), 0.005) << "wherever it starts";
+    std::vector<Pose> again = drifted;
+    optimise(again, edges, 0, {0.0, 30});
+    optimise(again, edges, 0, {3.0, 30});
+    for (std::size_t i = 0; i < again.size(); ++i) EXPECT_EQ(again[i].matrix(), poses[i].matrix());
 }
 
 TEST(Optimisation, NothingToDo) {

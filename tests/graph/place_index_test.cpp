@@ -58,6 +58,18 @@ TEST(PlaceIndex, WhatIsEverywhereTellsNothing) {
     for (const double score : index.scores(everywhere)) EXPECT_EQ(score, 0.0);
 }
 
+TEST(PlaceIndex, WhatIsSeenForeverTakesNoMoreMemory) {
+    Random random(5);
+    PlaceIndex index;
+    const auto room = descriptors(random, 50), poster = descriptors(random, 20);
+    index.add(poster);
+    for (int i = 0; i < 200; ++i) index.add(room);
+    const std::size_t entries = index.entries();
+    for (int i = 0; i < 2000; ++i) index.add(room);
+    EXPECT_LT(index.entries(), entries);
+    EXPECT_GT(index.scores(poster)[0], 0.9) << "what is rare is still found";
+}
+
 TEST(PlaceIndex, EmptyIndexAndEmptyViews) {
     Random random(4);
     PlaceIndex index;
