@@ -25,7 +25,7 @@ constexpr double kLongestGap = 1.5;      // seconds without a pose after which d
 constexpr double kReach = 0.3;           // metres and radians that a camera may always have moved
 constexpr int kBlindFrames = 3;          // without features, after which they are not looked for any harder
 constexpr int kBlindRetry = 8;           // every so many blind frames are looked at as others
-constexpr double kSureShare = 0.85;       // of the visible surface that must fit where nothing was predicted
+constexpr double kSureShare = 0.85;      // of the visible surface that must fit where nothing was predicted
 
 double seconds(std::int64_t microseconds) {
     return static_cast<double>(microseconds) * 1e-6;

@@ -12,9 +12,9 @@ namespace planemap::bench_odometry {
 /// own up, or that mean itself where no axis is within 35 deg.
 Eigen::Vector3d up_direction(const Trajectory& trajectory);
 
-/// The rows' trajectories over the truth (of the time that they span) from above, as an SVG: each aligned to the truth as for its ATE,
-/// with a legend that gives the ATE, and a scale bar. A line breaks where a second and a half have no pose.
-/// Rows without an ATE are left out.
+/// The rows' trajectories over the truth (of the time that they span) from above, as an SVG: each aligned to
+/// the truth as for its ATE, with a legend that gives the ATE, and a scale bar. A line breaks where a second
+/// and a half have no pose. Rows without an ATE are left out.
 std::string plot_svg(const std::string& title, const Trajectory& truth, const std::vector<Row>& rows);
 
 }  // namespace planemap::bench_odometry
