@@ -33,7 +33,7 @@ struct OdometryOptions {
     int surface_cell_px = 16;      ///< side of the depth cells a keyframe's surface is made of
     int surface_stride_px = 8;     ///< spacing of the depth samples of a frame
     double surface_gate_m = 0.04;  ///< samples further from the surface than this (and 3 sigma) are left out
-    double surface_weight = 0.5;   ///< information of one sample relative to an independent one
+    double surface_weight = 1.0;   ///< information of one sample relative to an independent one
     double plane_points = 3;       ///< independent points that a plane seen again counts as, at most
     double min_surface_share = 0.35;  ///< of the samples, for a pose that rests on depth alone
 
