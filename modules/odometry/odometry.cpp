@@ -526,7 +526,7 @@ LocalKeyframe Odometry::State::make_local(const PreparedFrame& view) const {
     local.surface.lay_on(view.regions, view.camera->noise);
     if (!view.gray) return local;
     const PinholeCamera& camera = view.camera->color;
-    const Pose depth_from_color_time = pose_from_twist(-last_color_offset_s_ * filter_.velocity());
+    const Pose depth_from_color_time = pose_from_twist(-last_color_offset_s_ * velocity);
     const CornerOptions corners{options_.max_points, options_.cell_px, options_.corner_threshold,
                                 options_.max_depth_spread};
     for (const cv::Point2f& pixel : select_corners(*view.gray, *view.depth, *view.camera, corners)) {

@@ -8,7 +8,9 @@
 #include "bench_odometry/benchmark.hpp"
 #include "bench_odometry/plots.hpp"
 #include "bench_odometry/table2.hpp"
-#include "build_info/build_info.hpp"
+#include "benchmark/build_info.hpp"
+#include "benchmark/choices.hpp"
+#include "benchmark/data_folder.hpp"
 #include "core/files.hpp"
 #include "messages/process.hpp"
 
@@ -24,12 +26,6 @@ struct Arguments {
     bool table2 = false;
 };
 
-/// Folder of the sample data, as the tests find it.
-std::filesystem::path default_data_folder() {
-    if (const char* root = std::getenv("PLANEMAP_DATA")) return root;
-    return std::filesystem::path(PLANEMAP_SOURCE) / ".." / "shared" / "data";
-}
-
 /// Where a user's programs may keep what they can make again.
 std::filesystem::path default_cache_folder() {
     const char* cache = std::getenv("XDG_CACHE_HOME");
@@ -37,22 +33,6 @@ std::filesystem::path default_cache_folder() {
     if (cache != nullptr && *cache != '\0') return std::filesystem::path(cache) / kProgram;
     return (home != nullptr ? std::filesystem::path(home) / ".cache" : std::filesystem::path("/tmp")) /
            kProgram;
-}
-
-template <typename Infos>
-std::string names_of(const Infos& infos) {
-    std::string list;
-    for (const auto& info : infos) list += (list.empty() ? "" : ",") + info.name;
-    return list;
-}
-
-/// One line each: name and what it is.
-template <typename Infos>
-std::string described(const Infos& infos) {
-    std::string text;
-    for (const auto& info : infos)
-        text += "  " + info.name + std::string(19 - info.name.size(), ' ') + info.what + "\n";
-    return text;
 }
 
 std::string description() {
@@ -67,7 +47,7 @@ std::string description() {
            "  planemap-bench-odometry --sequences redkitchen --plots out/plots\n"
            "  planemap-bench-odometry --table2                      the paper's Table 2\n"
            "Sequences:\n" +
-           described(known_sequences()) + "Methods:\n" + described(known_methods()) +
+           described(known_sequences(), 19) + "Methods:\n" + described(known_methods(), 19) +
            "Columns:\n"
            "  frames, lost   frames read; those without a pose, broken ones included\n"
            "  ATE m          absolute trajectory error after rigid alignment, RMSE, and the rest as TUM's\n"
@@ -181,9 +161,9 @@ int run(const Arguments& arguments) {
 int main(int argc, char** argv) {
     using namespace planemap::bench_odometry;
     Arguments arguments;
-    arguments.sequences = names_of(known_sequences());
-    arguments.methods = names_of(known_methods());
-    arguments.benchmark.data = default_data_folder();
+    arguments.sequences = planemap::names_of(known_sequences());
+    arguments.methods = planemap::names_of(known_methods());
+    arguments.benchmark.data = planemap::default_data_folder();
     arguments.benchmark.cache = default_cache_folder();
     planemap::Flags flags(kProgram, description());
     add_flags(flags, arguments);

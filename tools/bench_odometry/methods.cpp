@@ -2,10 +2,10 @@
 #include "bench_odometry/methods.hpp"
 
 #include <algorithm>
-#include <sstream>
 #include <stdexcept>
 
 #include "bench_odometry/peers.hpp"
+#include "benchmark/choices.hpp"
 #include "run/input.hpp"
 
 namespace planemap::bench_odometry {
@@ -77,21 +77,7 @@ const std::vector<MethodInfo>& known_methods() {
 }
 
 std::vector<MethodInfo> parse_methods(const std::string& list) {
-    std::vector<MethodInfo> methods;
-    std::istringstream words(list);
-    for (std::string word; std::getline(words, word, ',');) {
-        const auto& known = known_methods();
-        const auto method = std::find_if(known.begin(), known.end(),
-                                         [&](const MethodInfo& info) { return info.name == word; });
-        if (method == known.end()) {
-            std::string names;
-            for (const MethodInfo& info : known) names += (names.empty() ? "" : ", ") + info.name;
-            throw std::invalid_argument("methods: there is no \"" + word + "\", only " + names);
-        }
-        methods.push_back(*method);
-    }
-    if (methods.empty()) throw std::invalid_argument("methods: none given");
-    return methods;
+    return chosen("methods", list, known_methods());
 }
 
 MethodRun run_method(const std::string& method, const std::string& input, std::int64_t max_frames,

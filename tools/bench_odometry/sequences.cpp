@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <sstream>
 #include <stdexcept>
 
 #include "bench_odometry/child.hpp"
+#include "benchmark/choices.hpp"
 #include "sensor/simulator/simulated_source.hpp"
 #include "simulate/recording.hpp"
 
@@ -152,21 +152,7 @@ const std::vector<SequenceInfo>& known_sequences() {
 }
 
 std::vector<SequenceInfo> parse_sequences(const std::string& list) {
-    std::vector<SequenceInfo> sequences;
-    std::istringstream words(list);
-    for (std::string word; std::getline(words, word, ',');) {
-        const auto& known = known_sequences();
-        const auto sequence = std::find_if(known.begin(), known.end(),
-                                           [&](const SequenceInfo& info) { return info.name == word; });
-        if (sequence == known.end()) {
-            std::string names;
-            for (const SequenceInfo& info : known) names += (names.empty() ? "" : ", ") + info.name;
-            throw std::invalid_argument("sequences: there is no \"" + word + "\", only " + names);
-        }
-        sequences.push_back(*sequence);
-    }
-    if (sequences.empty()) throw std::invalid_argument("sequences: none given");
-    return sequences;
+    return chosen("sequences", list, known_sequences());
 }
 
 std::optional<Sequence> open_sequence(const SequenceInfo& info, const SequenceOptions& options,

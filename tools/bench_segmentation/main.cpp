@@ -3,12 +3,13 @@
 #include <pcl/pcl_config.h>
 
 #include <cstdio>
-#include <cstdlib>
 #include <opencv2/core/version.hpp>
 
 #include "bench_segmentation/benchmark.hpp"
 #include "bench_segmentation/table1.hpp"
-#include "build_info/build_info.hpp"
+#include "benchmark/build_info.hpp"
+#include "benchmark/choices.hpp"
+#include "benchmark/data_folder.hpp"
 #include "core/files.hpp"
 #include "messages/process.hpp"
 
@@ -24,28 +25,6 @@ struct Arguments {
     bool table1 = false;
 };
 
-/// Folder of the sample data, as the tests find it.
-std::filesystem::path default_data_folder() {
-    if (const char* root = std::getenv("PLANEMAP_DATA")) return root;
-    return std::filesystem::path(PLANEMAP_SOURCE) / ".." / "shared" / "data";
-}
-
-template <typename Infos>
-std::string names_of(const Infos& infos) {
-    std::string list;
-    for (const auto& info : infos) list += (list.empty() ? "" : ",") + info.name;
-    return list;
-}
-
-/// One line each: name and what it is.
-template <typename Infos>
-std::string described(const Infos& infos) {
-    std::string text;
-    for (const auto& info : infos)
-        text += "  " + info.name + std::string(20 - info.name.size(), ' ') + info.what + "\n";
-    return text;
-}
-
 std::string description() {
     return "Methods that find planes in depth images, on the same frames, one thread.\n"
            "Examples:\n  " +
@@ -55,8 +34,8 @@ std::string description() {
            "  planemap-bench-segmentation --table1                                the paper's Table 1\n"
            "  planemap-bench-segmentation --sequences sim:office --methods cells/1 --overlays out/overlays\n"
            "Sequences:\n" +
-           described(known_sequences()) + "Methods (NAME/N: at subsampling N only):\n" +
-           described(known_methods()) +
+           described(known_sequences(), 20) + "Methods (NAME/N: at subsampling N only):\n" +
+           described(known_methods(), 20) +
            "Columns:\n"
            "  ms, p95   median and 95th percentile over the frames of the thread's CPU time; the median of\n"
            "            three runs a frame, one run where it takes over 20 ms. Decimation is in it, "
@@ -137,7 +116,7 @@ int run(const Arguments& arguments) {
                               " compiled with these flags (PCL_NO_PRECOMPILE); ransac-debian: Debian's build "
                               "of it; OpenCV " CV_VERSION " as Debian builds it";
     std::fputs(build_info(peers).c_str(), out);
-    const bool all_methods = arguments.methods == names_of(known_methods());
+    const bool all_methods = arguments.methods == planemap::names_of(known_methods());
     const nlohmann::ordered_json json =
         arguments.table1 ? print_table1(table1_methods(arguments.methods, all_methods), out)
                          : run_sequences(arguments, out);
@@ -153,9 +132,9 @@ int run(const Arguments& arguments) {
 int main(int argc, char** argv) {
     using namespace planemap::bench;
     Arguments arguments;
-    arguments.sequences = names_of(known_sequences());
-    arguments.methods = names_of(known_methods());
-    arguments.benchmark.data = default_data_folder();
+    arguments.sequences = planemap::names_of(known_sequences());
+    arguments.methods = planemap::names_of(known_methods());
+    arguments.benchmark.data = planemap::default_data_folder();
     planemap::Flags flags(kProgram, description());
     add_flags(flags, arguments);
     const int parsed = flags.parse(argc, argv);

@@ -10,6 +10,7 @@
 #include "bench_segmentation/local_normals.hpp"
 #include "bench_segmentation/metrics.hpp"
 #include "bench_segmentation/peers.hpp"
+#include "benchmark/choices.hpp"
 #include "segment/thread_time.hpp"
 #include "segmentation/cells.hpp"
 #include "segmentation/ransac.hpp"
@@ -67,19 +68,14 @@ std::unique_ptr<Finder> make_finder(const MethodName& method) {
     throw std::invalid_argument("no method \"" + method.name + "\"");
 }
 
-std::string names_of_known() {
-    std::string names;
-    for (const MethodInfo& info : known_methods()) names += (names.empty() ? "" : ", ") + info.name;
-    return names;
-}
-
 void append(const std::string& word, std::vector<MethodName>& methods) {
     const auto slash = word.find('/');
     const std::string name = word.substr(0, slash);
     const auto info = std::find_if(known_methods().begin(), known_methods().end(),
                                    [&](const MethodInfo& known) { return known.name == name; });
     if (info == known_methods().end()) {
-        throw std::invalid_argument("methods: there is no \"" + name + "\", only " + names_of_known());
+        throw std::invalid_argument("methods: there is no \"" + name + "\", only " +
+                                    names_of(known_methods(), ", "));
     }
     if (slash == std::string::npos) {
         for (const int step : info->subsamplings) methods.push_back({name, step});
@@ -114,7 +110,8 @@ std::vector<MethodName> parse_methods(const std::string& list) {
     std::vector<MethodName> methods;
     std::istringstream words(list);
     for (std::string word; std::getline(words, word, ',');) append(word, methods);
-    if (methods.empty()) throw std::invalid_argument("methods: none given; there are " + names_of_known());
+    if (methods.empty())
+        throw std::invalid_argument("methods: none given; there are " + names_of(known_methods(), ", "));
     return methods;
 }
 

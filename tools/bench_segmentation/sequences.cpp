@@ -5,10 +5,10 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <sstream>
 #include <stdexcept>
 #include <tuple>
 
+#include "benchmark/choices.hpp"
 #include "core/files.hpp"
 #include "core/moments.hpp"
 #include "core/trajectory.hpp"
@@ -209,19 +209,7 @@ const std::vector<SequenceInfo>& known_sequences() {
 }
 
 std::vector<SequenceInfo> parse_sequences(const std::string& list) {
-    std::vector<SequenceInfo> sequences;
-    std::istringstream words(list);
-    for (std::string word; std::getline(words, word, ',');) {
-        std::string names;
-        for (const SequenceInfo& info : known_sequences()) {
-            if (info.name == word) sequences.push_back(info);
-            names += (names.empty() ? "" : ", ") + info.name;
-        }
-        if (sequences.empty() || sequences.back().name != word)
-            throw std::invalid_argument("sequences: there is no \"" + word + "\", only " + names);
-    }
-    if (sequences.empty()) throw std::invalid_argument("sequences: none given");
-    return sequences;
+    return chosen("sequences", list, known_sequences());
 }
 
 std::optional<Sequence> open_sequence(const SequenceInfo& info, int frames,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "build_info/build_info.hpp"
+#include "benchmark/build_info.hpp"
 
 #include <fstream>
 
