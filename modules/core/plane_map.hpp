@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The map of planes as it is kept, sent and stored: small, and the same bytes in all three.
 #pragma once
 
 #include <array>
@@ -18,34 +19,88 @@ enum class PlaneLabel : std::int8_t {
     kOther = 5
 };
 
-/// One plane of the map.
+/// "floor", "ceiling", "wall", "horizontal", "other" or "unknown".
+const char* label_name(PlaneLabel label);
+
+/// An outline in whole steps: 4 bytes a vertex.
+struct MapOutline {
+    static constexpr double kUnit_m =
+        0.001;  ///< a step, for outlines that reach up to 32 m from their origin
+
+    float unit = 0.001f;               ///< metres a step
+    std::vector<std::int16_t> packed;  ///< for each ring its number of vertices, then their x, y in steps
+
+    MapOutline() = default;
+    /// Rounded to steps of 1 mm (an error of at most 0.71 mm), or coarser ones if the outline reaches further
+    /// than 32 m. Throws std::length_error for a ring of over 32767 vertices.
+    explicit MapOutline(const Outline& outline);
+
+    bool empty() const { return packed.empty(); }
+    std::size_t ring_count() const;
+    std::size_t vertex_count() const;
+    /// As an Outline in the plane's x and y, metres.
+    Outline rings() const;
+    friend bool operator==(const MapOutline&, const MapOutline&) = default;
+};
+
+/// One plane of the map: 96 bytes and 4 an outline vertex, in single precision (which is a micrometre in a
+/// building). Its frame has the origin at the centre of its box (the paper's B), z along the normal.
 struct MapPlane {
     int id = -1;  ///< stable while the plane is the same
     PlaneLabel label = PlaneLabel::kUnknown;
-    PlanarRegion region;         ///< world frame; the normal towards where it was seen from
-    double area = 0;             ///< of the outline, square metres
-    std::vector<int> keyframes;  ///< ids of the keyframes that saw it, ascending
+    std::int16_t keyframes = 0;                              ///< that saw it; 32767: that many or more
+    Eigen::Vector3f normal = Eigen::Vector3f::UnitZ();       ///< unit, world, towards where it was seen from
+    Eigen::Vector3f center = Eigen::Vector3f::Zero();        ///< of the box, on the plane, world, metres
+    float angle = 0;                                         ///< of the box's x, about the normal; see axes()
+    Eigen::Vector2f half_extents = Eigen::Vector2f::Zero();  ///< of the box along its x and y, metres
+    float rms = 0;                                           ///< distance of the inliers to the plane, metres
+    float inliers = 0;                                       ///< the paper's N
+    float area = 0;                                          ///< of the outline, square metres
+    MapOutline outline;                                      ///< in the plane's x and y
+
+    MapPlane() = default;
+    /// From a region in the world frame; the area is the outline's.
+    MapPlane(int plane_id, const PlanarRegion& region_world, std::size_t keyframe_count);
+
+    /// n.p + d = 0 in the world frame.
+    Plane plane() const;
+    /// Where the outline's x, y, 0 lies in the world.
+    Pose world_from_plane() const;
+    /// Box in the world frame, two standard deviations of the inliers thick on either side.
+    Box box() const;
+    /// Plane, box, outline, rms and moments.count; the other moments are zero.
+    PlanarRegion region() const;
 };
+
+/// Distance from a point to the plane's outline, metres, world frame.
+double distance(const MapPlane& plane, const Eigen::Vector3d& p_world);
 
 /// Where two adjacent planes meet, cut to where both are. World frame, metres.
 struct IntersectionLine {
     int plane_a = -1, plane_b = -1;  ///< ids, plane_a < plane_b
-    Eigen::Vector3d from = Eigen::Vector3d::Zero(), to = Eigen::Vector3d::Zero();
+    Eigen::Vector3f from = Eigen::Vector3f::Zero(), to = Eigen::Vector3f::Zero();
 };
 
 /// Where three adjacent planes meet. World frame, metres.
 struct IntersectionPoint {
     std::array<int, 3> planes{-1, -1, -1};  ///< ids, ascending
-    Eigen::Vector3d position = Eigen::Vector3d::Zero();
+    Eigen::Vector3f position = Eigen::Vector3f::Zero();
 };
 
 /// The map: planes, and where they meet.
 struct PlaneMap {
-    std::int64_t utime = 0;        ///< of the newest keyframe in it, microseconds
-    int revision = 0;              ///< of the trajectory it was built from
-    std::vector<MapPlane> planes;  ///< ascending id
+    std::int64_t utime = 0;                        ///< of the newest keyframe in it, microseconds
+    int revision = 0;                              ///< of the trajectory it was built from
+    Eigen::Vector3f up = Eigen::Vector3f::Zero();  ///< unit, against gravity, world; zero: not known
+    std::vector<MapPlane> planes;                  ///< ascending id
     std::vector<IntersectionLine> lines;
     std::vector<IntersectionPoint> points;
+
+    /// The plane with the id, or nullptr.
+    const MapPlane* find(int id) const;
 };
+
+/// Bytes that the map takes in memory, by capacity.
+std::size_t memory_bytes(const PlaneMap& map);
 
 }  // namespace planemap

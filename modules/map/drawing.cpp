@@ -42,10 +42,11 @@ std::string css(const Rgb& color, double shade = 1) {
 
 Polygon3 polygon_of(const MapPlane& plane) {
     Polygon3 rings;
-    for (const Ring& ring : plane.region.outline.rings) {
+    const Pose world_from_plane = plane.world_from_plane();
+    for (const Ring& ring : plane.outline.rings().rings) {
         rings.emplace_back();
         for (const Eigen::Vector2d& v : ring)
-            rings.back().push_back(plane.region.box.frame_from_box * Eigen::Vector3d(v.x(), v.y(), 0));
+            rings.back().push_back(world_from_plane * Eigen::Vector3d(v.x(), v.y(), 0));
     }
     return rings;
 }
@@ -168,7 +169,7 @@ Eigen::Matrix3d level_from_world(const PlaneMap& map, const Eigen::Vector3d& up)
     // Directions of walls count modulo a right angle: their angles times four are averaged.
     Eigen::Vector2d sum = Eigen::Vector2d::Zero();
     for (const MapPlane& plane : map.planes) {
-        const Eigen::Vector3d n = axes.transpose() * plane.region.plane.normal;
+        const Eigen::Vector3d n = axes.transpose() * plane.normal.cast<double>();
         if (std::abs(n.z()) > 0.3) continue;
         const double angle = 4 * std::atan2(n.y(), n.x());
         sum += plane.area * Eigen::Vector2d(std::cos(angle), std::sin(angle));
@@ -197,24 +198,22 @@ Eigen::Vector3d guess_up(const PlaneMap& map, const Trajectory& trajectory) {
     held = held.norm() > 1e-6 ? held.normalized().eval() : Eigen::Vector3d(0, -1, 0);
     const MapPlane* best = nullptr;
     for (const MapPlane& plane : map.planes) {
-        const bool level = std::abs(plane.region.plane.normal.dot(held)) > std::cos(std::numbers::pi / 6);
+        const bool level = std::abs(plane.normal.cast<double>().dot(held)) > std::cos(std::numbers::pi / 6);
         if (level && (best == nullptr || plane.area > best->area)) best = &plane;
     }
     if (best == nullptr) return held;
-    const Eigen::Vector3d normal = best->region.plane.normal;
+    const Eigen::Vector3d normal = best->normal.cast<double>();
     return normal.dot(held) > 0 ? normal : (-normal).eval();
 }
 
 std::string overhead_svg(const PlaneMap& map, const Trajectory& trajectory,
                          std::optional<Eigen::Vector3d> up) {
     const Eigen::Matrix3d level = level_from_world(map, up.value_or(guess_up(map, trajectory)).normalized());
-    const auto height = [&](const MapPlane* plane) {
-        return level.row(2).dot(plane->region.box.frame_from_box.translation());
-    };
+    const auto height = [&](const MapPlane* plane) { return level.row(2).dot(plane->center.cast<double>()); };
     std::vector<const MapPlane*> surfaces, walls;
     std::vector<Eigen::Vector2d> extent;
     for (const MapPlane& plane : map.planes) {
-        const double upward = level.row(2).dot(plane.region.plane.normal);
+        const double upward = level.row(2).dot(plane.normal.cast<double>());
         if (upward < -0.35) continue;
         (upward > 0.35 ? surfaces : walls).push_back(&plane);
         for (const auto& ring : polygon_of(plane))
@@ -236,7 +235,7 @@ std::string overhead_svg(const PlaneMap& map, const Trajectory& trajectory,
                   "\" stroke-width=\"0.8\"/>\n";
     }
     for (const MapPlane* plane : walls) {
-        const Eigen::Vector3d along = level.row(2).transpose().cross(plane->region.plane.normal);
+        const Eigen::Vector3d along = level.row(2).transpose().cross(plane->normal.cast<double>());
         shapes += "<path d=\"" + wall_lines(polygon_of(*plane), along, project) +
                   "\" fill=\"none\" stroke=\"" + css(plane_color(plane->id), 0.75) +
                   "\" stroke-width=\"4\"/>\n";
@@ -244,7 +243,7 @@ std::string overhead_svg(const PlaneMap& map, const Trajectory& trajectory,
     for (const auto* group : {&walls, &surfaces}) {
         for (const MapPlane* plane : *group) {
             if (plane->area < kNumberedArea_m2) continue;
-            labels += numbers.place(plane->id, project(plane->region.box.frame_from_box.translation()));
+            labels += numbers.place(plane->id, project(plane->center.cast<double>()));
         }
     }
     return page("Planes seen from above",
@@ -282,7 +281,7 @@ View looking_from(double azimuth, const Eigen::Matrix3d& level, const Eigen::Vec
 View best_view(const PlaneMap& map, const Eigen::Matrix3d& level) {
     Eigen::Vector3d low = Eigen::Vector3d::Constant(1e300), high = -low;
     for (const MapPlane& plane : map.planes) {
-        for (const Eigen::Vector3d& corner : plane.region.box.face()) {
+        for (const Eigen::Vector3d& corner : plane.box().face()) {
             low = low.cwiseMin(corner);
             high = high.cwiseMax(corner);
         }
@@ -296,8 +295,8 @@ View best_view(const PlaneMap& map, const Eigen::Matrix3d& level) {
         const View view = looking_from((i + 0.3) * std::numbers::pi / 4, level, centre, radius);
         double area = 0;
         for (const MapPlane& plane : map.planes) {
-            const Eigen::Vector3d towards = view.eye - plane.region.box.frame_from_box.translation();
-            area += plane.area * std::max(0.0, plane.region.plane.normal.dot(towards.normalized()));
+            const Eigen::Vector3d towards = view.eye - plane.center.cast<double>();
+            area += plane.area * std::max(0.0, plane.normal.cast<double>().dot(towards.normalized()));
         }
         if (area > best_area) {
             best = view;
@@ -323,7 +322,7 @@ bool is_behind(const Drawn& a, const Drawn& b, const Eigen::Vector3d& eye) {
                 if (side * plane.signed_distance(p) < -kSlack_m) return false;
         return true;
     };
-    const Plane &plane_a = a.plane->region.plane, &plane_b = b.plane->region.plane;
+    const Plane plane_a = a.plane->plane(), plane_b = b.plane->plane();
     return all_on_side(b.rings, plane_a, plane_a.signed_distance(eye) > 0 ? 1 : -1) ||
            all_on_side(a.rings, plane_b, plane_b.signed_distance(eye) > 0 ? -1 : 1);
 }
@@ -369,7 +368,7 @@ std::string perspective_svg(const PlaneMap& map, const Trajectory& trajectory,
     std::vector<Eigen::Vector2d> extent;
     std::vector<const MapPlane*> visible;
     for (const MapPlane& plane : map.planes) {
-        if (!view.is_in_front_of(plane.region.plane)) continue;
+        if (!view.is_in_front_of(plane.plane())) continue;
         visible.push_back(&plane);
         for (const auto& ring : polygon_of(plane))
             for (const auto& p : ring) extent.push_back(view(p));
@@ -380,8 +379,7 @@ std::string perspective_svg(const PlaneMap& map, const Trajectory& trajectory,
     std::vector<Drawn> drawn;
     for (const MapPlane* plane : visible) {
         Drawn d{plane, polygon_of(*plane), Eigen::Vector2d::Constant(1e300),
-                Eigen::Vector2d::Constant(-1e300),
-                (plane->region.box.frame_from_box.translation() - view.eye).norm()};
+                Eigen::Vector2d::Constant(-1e300), (plane->center.cast<double>() - view.eye).norm()};
         for (const auto& ring : d.rings) {
             for (const auto& p : ring) {
                 d.low = d.low.cwiseMin(project(p));
@@ -399,7 +397,7 @@ std::string perspective_svg(const PlaneMap& map, const Trajectory& trajectory,
     };
     for (const Drawn& d : painters_order(std::move(drawn), view.eye)) {
         const Rgb color = plane_color(d.plane->id);
-        const double shade = 0.72 + 0.33 * std::abs(light.dot(d.plane->region.plane.normal));
+        const double shade = 0.72 + 0.33 * std::abs(light.dot(d.plane->normal.cast<double>()));
         body += "<path d=\"" + path(d.rings, project) + "\" fill-rule=\"evenodd\" fill=\"" +
                 css(color, shade) + "\" stroke=\"" + css(color, 0.6) +
                 "\" stroke-width=\"0.8\" stroke-linejoin=\"round\"/>\n";
@@ -408,13 +406,13 @@ std::string perspective_svg(const PlaneMap& map, const Trajectory& trajectory,
         for (const IntersectionLine& line : map.lines) {
             if (line.plane_a != d.plane->id && line.plane_b != d.plane->id) continue;
             if (!is_painted(line.plane_a) || !is_painted(line.plane_b)) continue;
-            body += "<path d=\"" + move_to(project(line.from)) + line_to(project(line.to)) +
-                    "\" stroke=\"#222\" stroke-width=\"1.8\"/>\n";
+            body += "<path d=\"" + move_to(project(line.from.cast<double>())) +
+                    line_to(project(line.to.cast<double>())) + "\" stroke=\"#222\" stroke-width=\"1.8\"/>\n";
         }
     }
     for (const IntersectionPoint& p : map.points) {
         if (!std::all_of(p.planes.begin(), p.planes.end(), is_painted)) continue;
-        const Eigen::Vector2d at = project(p.position);
+        const Eigen::Vector2d at = project(p.position.cast<double>());
         body += "<circle cx=\"" + text(at.x()) + "\" cy=\"" + text(at.y()) + "\" r=\"3.5\" fill=\"#222\"/>\n";
     }
     return page("Planes in perspective", body + trajectory_line(trajectory, project));

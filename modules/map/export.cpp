@@ -25,8 +25,8 @@ Json vector(const Eigen::Vector3d& v, double per_unit = 1e6) {
     return {number(v.x(), per_unit), number(v.y(), per_unit), number(v.z(), per_unit)};
 }
 
-Json plane_json(const MapPlane& plane) {
-    const PlanarRegion& region = plane.region;
+Json plane_json(const MapPlane& plane, const Sightings& sightings) {
+    const PlanarRegion region = plane.region();
     Json corners = Json::array(), outline = Json::array();
     for (const Eigen::Vector3d& corner : region.box.corners()) corners.push_back(vector(corner));
     for (const Ring& ring : region.outline.rings) {
@@ -40,13 +40,15 @@ Json plane_json(const MapPlane& plane) {
     json["label"] = label_name(plane.label);
     json["normal"] = vector(region.plane.normal, 1e9);
     json["d"] = number(region.plane.d);
-    json["inliers"] = number(region.moments.count, 1);
+    json["inliers"] = number(plane.inliers, 1);
     json["rms"] = number(region.rms);
     json["area"] = number(plane.area);
     json["center"] = vector(region.box.frame_from_box.translation());
     json["box_corners"] = std::move(corners);
     json["outline"] = std::move(outline);
-    json["keyframes"] = plane.keyframes;
+    const auto seen = sightings.find(plane.id);
+    json["keyframe_count"] = plane.keyframes;
+    json["keyframes"] = seen == sightings.end() ? std::vector<int>{} : seen->second;
     return json;
 }
 
@@ -70,24 +72,6 @@ void put(std::string& bytes, const auto& value) {
 
 }  // namespace
 
-const char* label_name(PlaneLabel label) {
-    switch (label) {
-        case PlaneLabel::kFloor:
-            return "floor";
-        case PlaneLabel::kCeiling:
-            return "ceiling";
-        case PlaneLabel::kWall:
-            return "wall";
-        case PlaneLabel::kHorizontal:
-            return "horizontal";
-        case PlaneLabel::kOther:
-            return "other";
-        case PlaneLabel::kUnknown:
-            break;
-    }
-    return "unknown";
-}
-
 Rgb plane_color(int id) {
     // Hues a golden angle apart, in three shades: neighbouring ids never look alike.
     const double hue = std::fmod(id * 0.6180339887498949, 1.0) + (id < 0 ? 1 : 0);
@@ -99,21 +83,23 @@ Rgb plane_color(int id) {
     return {channel(0), channel(1.0 / 3), channel(2.0 / 3)};
 }
 
-std::string planes_json(const PlaneMap& map) {
+std::string planes_json(const PlaneMap& map, const Sightings& sightings) {
     std::string text = "{\n \"format\": \"planemap planes 1\",\n";
     text +=
         " \"units\": \"metres; world frame; n.p + d = 0 with the normal towards where the plane was seen "
         "from\",\n";
     text += " \"utime\": " + std::to_string(map.utime) + ",\n \"revision\": " + std::to_string(map.revision) +
             ",\n";
-    text += " \"planes\": " + lines_of(map.planes, plane_json) + ",\n";
+    text +=
+        " \"planes\": " + lines_of(map.planes, [&](auto& plane) { return plane_json(plane, sightings); }) +
+        ",\n";
     text += " \"lines\": " + lines_of(map.lines, [](const IntersectionLine& line) {
                 return Json{{"planes", {line.plane_a, line.plane_b}},
-                            {"from", vector(line.from)},
-                            {"to", vector(line.to)}};
+                            {"from", vector(line.from.cast<double>())},
+                            {"to", vector(line.to.cast<double>())}};
             });
     text += ",\n \"points\": " + lines_of(map.points, [](const IntersectionPoint& point) {
-                return Json{{"planes", point.planes}, {"position", vector(point.position)}};
+                return Json{{"planes", point.planes}, {"position", vector(point.position.cast<double>())}};
             });
     return text + "\n}\n";
 }
@@ -122,12 +108,13 @@ std::string planes_ply(const PlaneMap& map) {
     std::string vertices, faces;
     int vertex_count = 0, face_count = 0;
     for (const MapPlane& plane : map.planes) {
-        const Triangulation triangulation = triangulate(plane.region.outline);
+        const PlanarRegion region = plane.region();
+        const Triangulation triangulation = triangulate(region.outline);
         const Rgb color = plane_color(plane.id);
         for (const Eigen::Vector2d& v : triangulation.vertices) {
-            const Eigen::Vector3d p = plane.region.box.frame_from_box * Eigen::Vector3d(v.x(), v.y(), 0);
+            const Eigen::Vector3d p = region.box.frame_from_box * Eigen::Vector3d(v.x(), v.y(), 0);
             for (const double value : {p.x(), p.y(), p.z()}) put(vertices, static_cast<float>(value));
-            for (int i = 0; i < 3; ++i) put(vertices, static_cast<float>(plane.region.plane.normal[i]));
+            for (int i = 0; i < 3; ++i) put(vertices, static_cast<float>(region.plane.normal[i]));
             for (const std::uint8_t value : {color.r, color.g, color.b}) put(vertices, value);
         }
         for (const auto& triangle : triangulation.triangles) {

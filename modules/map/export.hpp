@@ -2,8 +2,10 @@
 // The map in formats that other tools read. All functions are pure: the same map gives the same bytes.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/image.hpp"
 #include "core/plane_map.hpp"
@@ -11,16 +13,16 @@
 
 namespace planemap {
 
-/// "floor", "ceiling", "wall", "horizontal", "other" or "unknown".
-const char* label_name(PlaneLabel label);
-
 /// A colour that tells plane ids apart; the same in all exports.
 Rgb plane_color(int id);
+
+/// Ids of the keyframes that saw each plane, by the plane's id; both ascending.
+using Sightings = std::map<int, std::vector<int>>;
 
 /// JSON: planes (id, label, normal, d, inliers, rms, box corners, area, outline rings, keyframes),
 /// intersection lines and points. World frame, metres; values are rounded to a micrometre (normals to 1e-9).
 /// Values that are not finite become null.
-std::string planes_json(const PlaneMap& map);
+std::string planes_json(const PlaneMap& map, const Sightings& sightings = {});
 
 /// Binary little-endian PLY: each outline as triangles with the plane's colour and normal at its vertices.
 /// World frame, metres.

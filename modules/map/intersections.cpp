@@ -47,9 +47,10 @@ Intervals joined(Intervals intervals, double bridge) {
     return result;
 }
 
-/// Where along the line the region is within the gap of it: the outline is cut by lines parallel to it.
-Intervals along_line(const PlanarRegion& region, const Line& line, double gap) {
-    const Pose box_from_world = region.box.frame_from_box.inverse(Eigen::Isometry);
+/// Where along the line the plane is within the gap of it: the outline is cut by lines parallel to it.
+Intervals along_line(const MapPlane& plane, const Line& line, double gap) {
+    const Pose box_from_world = plane.world_from_plane().inverse(Eigen::Isometry);
+    const Outline outline = plane.outline.rings();
     const Eigen::Vector2d origin = (box_from_world * line.origin).head<2>();
     const Eigen::Vector2d along = (box_from_world.linear() * line.direction).head<2>().normalized();
     const Eigen::Vector2d across(-along.y(), along.x());
@@ -59,7 +60,7 @@ Intervals along_line(const PlanarRegion& region, const Line& line, double gap) {
     for (int cut = -kCuts; cut <= kCuts; ++cut) {
         const double height = gap * cut / kCuts;
         crossings.clear();
-        for (const Ring& ring : region.outline.rings) {
+        for (const Ring& ring : outline.rings) {
             for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
                 const double a = across.dot(ring[j] - origin) - height;
                 const double b = across.dot(ring[i] - origin) - height;
@@ -90,25 +91,25 @@ Intervals overlap(const Intervals& a, const Intervals& b) {
 std::vector<IntersectionLine> intersection_lines(const MapPlane& a, const MapPlane& b,
                                                  const AdjacencyRules& rules) {
     const MapPlane &first = a.id < b.id ? a : b, &second = a.id < b.id ? b : a;
-    const PlanarRegion &region_a = first.region, &region_b = second.region;
+    const Plane plane_a = first.plane(), plane_b = second.plane();
+    const Box box_a = first.box(), box_b = second.box();
     // The common line lies in both planes, so neither box may be further from the other's plane.
-    const double reach =
-        region_a.box.half_extents.norm() + region_b.box.half_extents.norm() + 2 * rules.gap_m;
-    if ((region_a.box.frame_from_box.translation() - region_b.box.frame_from_box.translation()).norm() >
-            reach ||
-        distance_to(region_a.plane, region_b.box) > rules.gap_m ||
-        distance_to(region_b.plane, region_a.box) > rules.gap_m) {
+    const double reach = box_a.half_extents.norm() + box_b.half_extents.norm() + 2 * rules.gap_m;
+    if ((box_a.frame_from_box.translation() - box_b.frame_from_box.translation()).norm() > reach ||
+        distance_to(plane_a, box_b) > rules.gap_m || distance_to(plane_b, box_a) > rules.gap_m) {
         return {};
     }
-    const auto line = common_line(region_a.plane, region_b.plane, rules.min_angle_rad);
+    const auto line = common_line(plane_a, plane_b, rules.min_angle_rad);
     if (!line) return {};
-    const Intervals on_first = along_line(region_a, *line, rules.gap_m);
+    const Intervals on_first = along_line(first, *line, rules.gap_m);
     if (on_first.empty()) return {};
     std::vector<IntersectionLine> lines;
-    for (const Interval& piece : overlap(on_first, along_line(region_b, *line, rules.gap_m))) {
+    for (const Interval& piece : overlap(on_first, along_line(second, *line, rules.gap_m))) {
         if (piece.high - piece.low < rules.min_length_m) continue;
-        lines.push_back({first.id, second.id, line->origin + piece.low * line->direction,
-                         line->origin + piece.high * line->direction});
+        const auto at = [&](double along) -> Eigen::Vector3f {
+            return (line->origin + along * line->direction).cast<float>();
+        };
+        lines.push_back({first.id, second.id, at(piece.low), at(piece.high)});
     }
     return lines;
 }
@@ -116,14 +117,15 @@ std::vector<IntersectionLine> intersection_lines(const MapPlane& a, const MapPla
 std::optional<IntersectionPoint> intersection_point(const MapPlane& a, const MapPlane& b, const MapPlane& c,
                                                     const AdjacencyRules& rules) {
     Eigen::Matrix3d rows;
-    rows << a.region.plane.normal.transpose(), b.region.plane.normal.transpose(),
-        c.region.plane.normal.transpose();
+    const Plane plane_a = a.plane(), plane_b = b.plane(), plane_c = c.plane();
+    rows << plane_a.normal.transpose(), plane_b.normal.transpose(), plane_c.normal.transpose();
     // The volume spanned by the normals: small when the three planes nearly share a line.
     if (std::abs(rows.determinant()) < std::pow(std::sin(rules.min_angle_rad), 2)) return std::nullopt;
+    const Eigen::Vector3d position = rows.inverse() * -Eigen::Vector3d(plane_a.d, plane_b.d, plane_c.d);
     IntersectionPoint point;
-    point.position = rows.inverse() * -Eigen::Vector3d(a.region.plane.d, b.region.plane.d, c.region.plane.d);
+    point.position = position.cast<float>();
     for (const MapPlane* plane : {&a, &b, &c}) {
-        if (distance(plane->region, point.position) > rules.gap_m) return std::nullopt;
+        if (distance(*plane, position) > rules.gap_m) return std::nullopt;
     }
     point.planes = {a.id, b.id, c.id};
     std::sort(point.planes.begin(), point.planes.end());

@@ -383,19 +383,16 @@ void PlaneMapper::keep_ids(const std::map<int, std::vector<int>>& planes_before,
 }
 
 MapPlane PlaneMapper::derive(const Surface& surface) const {
-    MapPlane plane;
-    plane.id = surface.id;
-    plane.keyframes = surface.keyframes;
-    plane.region.plane = surface.plane;
-    plane.region.moments = surface.moments;
-    plane.region.box = surface.box;
-    plane.region.rms = rms_to(surface.plane, surface.moments);
+    PlanarRegion region;
+    region.plane = surface.plane;
+    region.moments = surface.moments;
+    region.box = surface.box;
+    region.rms = rms_to(surface.plane, surface.moments);
     const Outline outline_grid = surface.grid.outline(
         {options_.outline_min_views, options_.outline_min_ring_m2, options_.outline_tolerance_m});
-    plane.region.outline = transformed(
+    region.outline = transformed(
         surface.box.frame_from_box.inverse(Eigen::Isometry) * surface.grid.world_from_grid(), outline_grid);
-    plane.area = area(plane.region.outline);
-    return plane;
+    return {surface.id, region, surface.keyframes.size()};
 }
 
 /// Brings map_ up to date: only planes that changed are derived anew, with the intersections they are in.
@@ -412,7 +409,8 @@ void PlaneMapper::refresh() {
             draw(surface);
             if (static_cast<int>(surface.keyframes.size()) < options_.min_keyframes) continue;
             MapPlane plane = derive(surface);
-            if (plane.area >= options_.min_area_m2 && plane.area > 0) planes.push_back(std::move(plane));
+            if (static_cast<double>(plane.area) >= options_.min_area_m2 && plane.area > 0)
+                planes.push_back(std::move(plane));
         } else if (known != before.end()) {
             planes.push_back(std::move(known->second));
         }
@@ -467,11 +465,13 @@ void PlaneMapper::refresh_intersections(const std::vector<int>& changed_ids) {
 }
 
 std::size_t PlaneMapper::memory_bytes() const {
-    std::size_t bytes =
-        sizeof map_ + heap_bytes(map_.planes) + heap_bytes(map_.lines) + heap_bytes(map_.points);
-    for (const MapPlane& plane : map_.planes)
-        bytes += heap_bytes(plane.keyframes) + heap_bytes(plane.region.outline);
-    return bytes;
+    return planemap::memory_bytes(map_);
+}
+
+std::map<int, std::vector<int>> PlaneMapper::sightings() const {
+    std::map<int, std::vector<int>> result;
+    for (const Surface& surface : surfaces_) result[surface.id] = surface.keyframes;
+    return result;
 }
 
 std::size_t PlaneMapper::working_bytes() const {

@@ -70,6 +70,8 @@ class PlaneMapper {
 
     /// The map after the last call.
     const PlaneMap& map() const { return map_; }
+    /// Ids of the keyframes that saw each plane, ascending, by the plane's id.
+    std::map<int, std::vector<int>> sightings() const;
     /// Bytes of the map itself: all that map() holds, by capacity, without the keyframes kept for rebuilding
     /// and without the rasters of the outlines.
     std::size_t memory_bytes() const;

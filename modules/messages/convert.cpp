@@ -343,54 +343,28 @@ KeyframeTrajectory from_message(const trajectory_t& message) {
 
 namespace {
 
-constexpr double kVertexUnit = 0.001;
-constexpr double kVertexSteps = 32767;
-
-/// The direction that map_plane_t.angle counts from: the first of world x, y, z that is not nearly along the
-/// normal.
-Eigen::Matrix3d reference_axes(const Eigen::Vector3d& normal) {
-    const Eigen::Vector3d reference =
-        std::abs(normal.x()) < 0.9 ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitY();
-    return plane_axes(normal, reference);
-}
-
 map_plane_t to_message(const MapPlane& plane) {
-    const PlanarRegion& region = plane.region;
     map_plane_t message;
     message.id = plane.id;
     message.label = static_cast<std::int8_t>(plane.label);
-    // The centre is sent, so d follows from the rounded normal: the plane passes through the centre whatever
-    // is rounded.
-    const Eigen::Vector3f normal = region.plane.normal.cast<float>();
-    const Eigen::Vector3d center = region.plane.project(region.box.frame_from_box.translation());
     for (int i = 0; i < 3; ++i) {
-        message.normal[i] = normal[i];
-        message.center[i] = static_cast<float>(center[i]);
+        message.normal[i] = plane.normal[i];
+        message.center[i] = plane.center[i];
     }
-    message.d = static_cast<float>(-normal.cast<double>().dot(center));
-    const Eigen::Vector3d x =
-        reference_axes(region.plane.normal).transpose() * region.box.frame_from_box.linear().col(0);
-    message.angle = static_cast<float>(std::atan2(x.y(), x.x()));
-    message.half_extents[0] = static_cast<float>(region.box.half_extents.x());
-    message.half_extents[1] = static_cast<float>(region.box.half_extents.y());
-    message.rms = static_cast<float>(region.rms);
-    message.inliers = static_cast<float>(region.moments.count);
-    message.area = static_cast<float>(plane.area);
-    message.n_keyframes = static_cast<std::int16_t>(std::min<std::size_t>(plane.keyframes.size(), 32767));
-    double largest = 0;
-    for (const Ring& ring : region.outline.rings) {
-        for (const auto& v : ring) largest = std::max(largest, v.cwiseAbs().maxCoeff());
-    }
-    message.unit = static_cast<float>(std::max(kVertexUnit, largest / kVertexSteps));
-    const auto steps = [&](double value) {
-        return static_cast<std::int16_t>(
-            std::clamp(std::round(value / message.unit), -kVertexSteps, kVertexSteps));
-    };
-    for (const Ring& ring : region.outline.rings) {
-        if (ring.size() > 32767)
-            throw std::length_error("plane " + std::to_string(plane.id) + ": outline ring too long");
-        message.ring_sizes.push_back(static_cast<std::int16_t>(ring.size()));
-        for (const auto& v : ring) message.vertices.push_back({steps(v.x()), steps(v.y())});
+    message.d = static_cast<float>(plane.plane().d);
+    message.angle = plane.angle;
+    message.half_extents[0] = plane.half_extents.x();
+    message.half_extents[1] = plane.half_extents.y();
+    message.rms = plane.rms;
+    message.inliers = plane.inliers;
+    message.area = plane.area;
+    message.n_keyframes = plane.keyframes;
+    message.unit = plane.outline.unit;
+    const std::vector<std::int16_t>& packed = plane.outline.packed;
+    for (std::size_t i = 0; i < packed.size();) {
+        message.ring_sizes.push_back(packed[i++]);
+        for (int k = 0; k < message.ring_sizes.back(); ++k, i += 2)
+            message.vertices.push_back({packed[i], packed[i + 1]});
     }
     if (message.ring_sizes.size() > 32767)
         throw std::length_error("plane " + std::to_string(plane.id) + ": too many rings");
@@ -404,31 +378,40 @@ MapPlane from_message(const map_plane_t& message) {
     plane.id = message.id;
     require(message.label >= 0 && message.label <= 5, "plane.label", "is unknown");
     plane.label = static_cast<PlaneLabel>(message.label);
-    const Eigen::Vector3d normal = Eigen::Vector3f(message.normal).cast<double>();
-    const Eigen::Vector3d center = Eigen::Vector3f(message.center).cast<double>();
-    require(normal.allFinite() && std::abs(normal.norm() - 1) < 1e-3, "plane.normal", "is not a unit vector");
-    require(center.allFinite() && std::isfinite(message.d), "plane.center", "is not finite");
-    require(std::isfinite(message.angle), "plane.angle", "is not finite");
-    require(std::isfinite(message.unit) && message.unit > 0, "plane.unit", "is not above 0");
-    require(std::isfinite(message.area) && message.area >= 0, "plane.area", "is negative or not finite");
-    require(message.inliers >= 3, "plane.inliers", "are fewer than 3");
-    PlanarRegion& region = plane.region;
-    region.plane.normal = normal.normalized();
-    region.plane.d = -region.plane.normal.dot(center);
-    const Eigen::Matrix3d axes = reference_axes(region.plane.normal);
-    region.box.frame_from_box.linear() =
-        axes *
-        Eigen::AngleAxisd(static_cast<double>(message.angle), Eigen::Vector3d::UnitZ()).toRotationMatrix();
-    region.box.frame_from_box.translation() = center;
-    region.box.half_extents = {message.half_extents[0], message.half_extents[1], 0};
-    region.rms = message.rms;
-    region.moments.count = message.inliers;
+    plane.normal = Eigen::Vector3f(message.normal);
+    plane.center = Eigen::Vector3f(message.center);
+    plane.angle = message.angle;
+    plane.half_extents = Eigen::Vector2f(message.half_extents);
+    plane.rms = message.rms;
+    plane.inliers = message.inliers;
     plane.area = message.area;
-    const double unit = message.unit;
-    region.outline = rings_from(message.ring_sizes, message.vertices.size(), [&](std::size_t i) {
-        return Eigen::Vector2d(unit * message.vertices[i][0], unit * message.vertices[i][1]);
-    });
-    require(is_valid(region), "plane", "has a box, outline or rms that is not finite or not consistent");
+    plane.keyframes = message.n_keyframes;
+    plane.outline.unit = message.unit;
+    require(plane.normal.allFinite() && std::abs(plane.normal.norm() - 1) < 1e-3f, "plane.normal",
+            "is not a unit vector");
+    require(plane.center.allFinite() && std::isfinite(message.d), "plane.center", "is not finite");
+    require(std::isfinite(plane.angle), "plane.angle", "is not finite");
+    require(plane.half_extents.allFinite() && plane.half_extents.minCoeff() >= 0, "plane.half_extents",
+            "are negative or not finite");
+    require(std::isfinite(plane.rms) && plane.rms >= 0, "plane.rms", "is negative or not finite");
+    require(std::isfinite(plane.area) && plane.area >= 0, "plane.area", "is negative or not finite");
+    require(std::isfinite(plane.inliers) && plane.inliers >= 3, "plane.inliers", "are fewer than 3");
+    require(message.n_keyframes >= 0, "plane.n_keyframes", "is negative");
+    require(std::isfinite(message.unit) && message.unit > 0 && message.unit < 1, "plane.unit",
+            "is not between 0 and 1");
+    const std::size_t vertices = message.vertices.size();
+    plane.outline.packed.reserve(message.ring_sizes.size() + 2 * vertices);
+    std::size_t next = 0;
+    for (const std::int16_t size : message.ring_sizes) {
+        require(size >= 3, "plane.ring_sizes", "has a ring of fewer than 3 vertices");
+        require(static_cast<std::size_t>(size) <= vertices - next, "plane.ring_sizes",
+                "does not add up to the vertices");
+        plane.outline.packed.push_back(size);
+        for (const std::size_t end = next + static_cast<std::size_t>(size); next < end; ++next)
+            plane.outline.packed.insert(plane.outline.packed.end(),
+                                        {message.vertices[next][0], message.vertices[next][1]});
+    }
+    require(next == vertices, "plane.ring_sizes", "does not add up to the vertices");
     return plane;
 }
 
@@ -438,16 +421,17 @@ struct SharedLine {
     bool valid = false;  ///< false for (nearly) parallel planes
 };
 
-SharedLine shared_line(const PlanarRegion& a, const PlanarRegion& b) {
+SharedLine shared_line(const MapPlane& plane_a, const MapPlane& plane_b) {
+    const Plane a = plane_a.plane(), b = plane_b.plane();
     SharedLine line;
-    const Eigen::Vector3d cross = a.plane.normal.cross(b.plane.normal);
+    const Eigen::Vector3d cross = a.normal.cross(b.normal);
     const double sine = cross.norm();
     if (sine < 1e-3) return line;
     line.direction = cross / sine;
     // From plane a's centre, within plane a and square to the line, to plane b.
-    const Eigen::Vector3d center = a.plane.project(a.box.frame_from_box.translation());
-    const Eigen::Vector3d across = line.direction.cross(a.plane.normal);
-    line.origin = center - across * (b.plane.signed_distance(center) / b.plane.normal.dot(across));
+    const Eigen::Vector3d center = a.project(plane_a.center.cast<double>());
+    const Eigen::Vector3d across = line.direction.cross(a.normal);
+    line.origin = center - across * (b.signed_distance(center) / b.normal.dot(across));
     line.valid = line.origin.allFinite();
     return line;
 }
@@ -460,12 +444,6 @@ std::optional<Eigen::Vector3d> shared_point(const Plane& a, const Plane& b, cons
     return Eigen::Vector3d(normals.inverse() * Eigen::Vector3d(-a.d, -b.d, -c.d));
 }
 
-/// Planes as the receiver will see them, and where each id is.
-struct SentPlanes {
-    std::vector<PlanarRegion> regions;
-    std::map<int, std::int16_t> index;
-};
-
 }  // namespace
 
 plane_map_t to_message(const PlaneMap& map, std::int32_t seq) {
@@ -473,32 +451,26 @@ plane_map_t to_message(const PlaneMap& map, std::int32_t seq) {
     message.utime = map.utime;
     message.seq = seq;
     message.revision = map.revision;
+    std::copy(map.up.data(), map.up.data() + 3, message.up);
     if (map.planes.size() > 32767) throw std::length_error("plane map: more than 32767 planes");
-    SentPlanes sent;
-    for (const MapPlane& plane : map.planes) {
-        sent.index[plane.id] = static_cast<std::int16_t>(message.planes.size());
-        message.planes.push_back(to_message(plane));
-        sent.regions.push_back(from_message(message.planes.back()).region);
-    }
+    for (const MapPlane& plane : map.planes) message.planes.push_back(to_message(plane));
     message.n_planes = count32(message.planes.size());
-    const auto region = [&](int id) -> const PlanarRegion& {
-        return sent.regions[static_cast<std::size_t>(sent.index.at(id))];
-    };
+    const auto index = [&](int id) { return static_cast<std::int16_t>(map.find(id) - map.planes.data()); };
     for (const IntersectionLine& line : map.lines) {
-        const SharedLine shared = shared_line(region(line.plane_a), region(line.plane_b));
+        const SharedLine shared = shared_line(*map.find(line.plane_a), *map.find(line.plane_b));
         if (!shared.valid) continue;
         map_line_t& m = message.lines.emplace_back();
-        m.plane_a = sent.index.at(line.plane_a);
-        m.plane_b = sent.index.at(line.plane_b);
-        m.from = static_cast<float>((line.from - shared.origin).dot(shared.direction));
-        m.to = static_cast<float>((line.to - shared.origin).dot(shared.direction));
+        m.plane_a = index(line.plane_a);
+        m.plane_b = index(line.plane_b);
+        m.from = static_cast<float>((line.from.cast<double>() - shared.origin).dot(shared.direction));
+        m.to = static_cast<float>((line.to.cast<double>() - shared.origin).dot(shared.direction));
     }
     message.n_lines = count32(message.lines.size());
     for (const IntersectionPoint& point : map.points) {
         const auto& [a, b, c] = point.planes;
-        if (!shared_point(region(a).plane, region(b).plane, region(c).plane)) continue;
+        if (!shared_point(map.find(a)->plane(), map.find(b)->plane(), map.find(c)->plane())) continue;
         map_point_t& m = message.points.emplace_back();
-        for (std::size_t i = 0; i < 3; ++i) m.planes[i] = sent.index.at(point.planes[i]);
+        for (std::size_t i = 0; i < 3; ++i) m.planes[i] = index(point.planes[i]);
     }
     message.n_points = count32(message.points.size());
     return message;
@@ -508,6 +480,10 @@ PlaneMap from_message(const plane_map_t& message) {
     PlaneMap map;
     map.utime = message.utime;
     map.revision = message.revision;
+    map.up = Eigen::Vector3f(message.up);
+    require(map.up.allFinite() && (map.up.isZero() || std::abs(map.up.norm() - 1) < 1e-3f), "up",
+            "is neither zero nor a unit vector");
+    map.planes.reserve(message.planes.size());
     for (const map_plane_t& plane : message.planes) {
         require(map.planes.empty() || plane.id > map.planes.back().id, "plane.id", "does not ascend");
         map.planes.push_back(from_message(plane));
@@ -519,19 +495,21 @@ PlaneMap from_message(const plane_map_t& message) {
     for (const map_line_t& line : message.lines) {
         const MapPlane &a = plane_at(line.plane_a, "line.plane_a"),
                        &b = plane_at(line.plane_b, "line.plane_b");
-        const SharedLine shared = shared_line(a.region, b.region);
+        const SharedLine shared = shared_line(a, b);
         require(shared.valid, "line", "joins parallel planes");
         require(std::isfinite(line.from) && std::isfinite(line.to), "line", "has an end that is not finite");
-        map.lines.push_back({a.id, b.id, shared.origin + static_cast<double>(line.from) * shared.direction,
-                             shared.origin + static_cast<double>(line.to) * shared.direction});
+        const auto at = [&](float along) -> Eigen::Vector3f {
+            return (shared.origin + static_cast<double>(along) * shared.direction).cast<float>();
+        };
+        map.lines.push_back({a.id, b.id, at(line.from), at(line.to)});
     }
     for (const map_point_t& point : message.points) {
         const MapPlane &a = plane_at(point.planes[0], "point.planes"),
                        &b = plane_at(point.planes[1], "point.planes"),
                        &c = plane_at(point.planes[2], "point.planes");
-        const auto position = shared_point(a.region.plane, b.region.plane, c.region.plane);
+        const auto position = shared_point(a.plane(), b.plane(), c.plane());
         require(position.has_value(), "point", "joins planes that do not meet in one point");
-        map.points.push_back({{a.id, b.id, c.id}, *position});
+        map.points.push_back({{a.id, b.id, c.id}, position->cast<float>()});
     }
     return map;
 }

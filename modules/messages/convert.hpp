@@ -45,12 +45,10 @@ Keyframe from_message(const keyframe_t& message);
 trajectory_t to_message(const KeyframeTrajectory& trajectory, std::int32_t seq);
 KeyframeTrajectory from_message(const trajectory_t& message);
 
-/// The map in at most 96 bytes a plane and 4 bytes an outline vertex. Outline vertices are rounded to a step
-/// of 1 mm (error at most 0.71 mm in the plane), coarser only for a plane of over 65 m. Which keyframes saw a
-/// plane is reduced to their number; the exact moments stay behind.
+/// The map in at most 96 bytes a plane and 4 bytes an outline vertex: the very values that PlaneMap holds, so
+/// nothing is lost but the ends of lines and points, which are rounded to single precision along their
+/// planes.
 plane_map_t to_message(const PlaneMap& map, std::int32_t seq);
-/// The map back: plane, box, outline, inliers (as moments.count; the other moments are zero), labels,
-/// intersections. keyframes is empty.
 PlaneMap from_message(const plane_map_t& message);
 
 /// How the images of a frame are sent.

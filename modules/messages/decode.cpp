@@ -142,7 +142,7 @@ void walk(Walker& w, const trajectory_t*) {
     w.array(w.length("n_keyframes"), 4 + 8 + kTransform, "keyframes");
 }
 void walk(Walker& w, const plane_map_t*) {
-    w.skip(8 + 4 + 4, "utime");
+    w.skip(8 + 4 + 4 + 4 * 3, "utime");
     const std::int32_t planes = w.length("n_planes");
     w.bound(planes, 64, "planes");
     for (std::int32_t i = 0; i < planes; ++i) {

@@ -20,12 +20,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 MapPlane plane_of(int id, const Rectangle& rectangle) {
-    MapPlane plane;
-    plane.id = id;
-    plane.region = scene::region_of(rectangle, Pose::Identity());
-    plane.area = area(plane.region.outline);
-    plane.keyframes = {0, 3};
-    return plane;
+    return {id, scene::region_of(rectangle, Pose::Identity()), 2};
 }
 
 PlaneMap corner() {
@@ -91,7 +86,7 @@ Ply read_ply(const std::string& bytes) {
 
 TEST(PlanesJson, SaysWhatTheMapSays) {
     const PlaneMap map = corner();
-    const auto json = nlohmann::json::parse(planes_json(map));
+    const auto json = nlohmann::json::parse(planes_json(map, {{3, {0, 3}}}));
     EXPECT_EQ(json["utime"], 42);
     ASSERT_EQ(json["planes"].size(), 3u);
     const auto& wall = json["planes"][1];
@@ -100,9 +95,10 @@ TEST(PlanesJson, SaysWhatTheMapSays) {
     EXPECT_EQ(wall["label"], "unknown");
     EXPECT_NEAR(wall["normal"][0], -1, 1e-9);
     EXPECT_NEAR(wall["d"], 1, 1e-6);
-    EXPECT_EQ(wall["inliers"], map.planes[1].region.moments.count);
+    EXPECT_EQ(wall["inliers"], map.planes[1].inliers);
     EXPECT_NEAR(wall["area"], 4 - 0.35, 1e-6);
     EXPECT_EQ(wall["box_corners"].size(), 8u);
+    EXPECT_EQ(wall["keyframe_count"], 2);
     EXPECT_EQ(wall["keyframes"], nlohmann::json::parse("[0, 3]"));
     ASSERT_EQ(wall["outline"].size(), 2u);
     for (const auto& ring : wall["outline"])
@@ -116,9 +112,9 @@ TEST(PlanesJson, OfAnEmptyMapAndOfNan) {
     const auto empty = nlohmann::json::parse(planes_json({}));
     EXPECT_TRUE(empty["planes"].empty() && empty["lines"].empty() && empty["points"].empty());
     PlaneMap map = corner();
-    map.planes[0].region.rms = std::numeric_limits<double>::quiet_NaN();
-    map.planes[0].area = std::numeric_limits<double>::infinity();
-    const auto json = nlohmann::json::parse(planes_json(map));
+    map.planes[0].rms = std::numeric_limits<float>::quiet_NaN();
+    map.planes[0].area = std::numeric_limits<float>::infinity();
+    const auto json = nlohmann::json::parse(planes_json(map, {{3, {0, 3}}}));
     EXPECT_TRUE(json["planes"][0]["rms"].is_null());
     EXPECT_TRUE(json["planes"][0]["area"].is_null());
 }
@@ -138,7 +134,7 @@ TEST(PlanesPly, HasTheAreaAndNormalsOfThePlanes) {
             << "faces turn like their normal";
         area += 0.5 * static_cast<double>(twice.norm());
     }
-    for (const MapPlane& plane : map.planes) expected += plane.area;
+    for (const MapPlane& plane : map.planes) expected += static_cast<double>(plane.area);
     EXPECT_NEAR(area, expected, 1e-5);
     EXPECT_TRUE(read_ply(planes_ply({})).faces.empty());
 }

@@ -12,11 +12,7 @@ using scene::facing;
 using scene::Rectangle;
 
 MapPlane plane_of(int id, const Rectangle& rectangle) {
-    MapPlane plane;
-    plane.id = id;
-    plane.region = scene::region_of(rectangle, Pose::Identity());
-    plane.area = area(plane.region.outline);
-    return plane;
+    return {id, scene::region_of(rectangle, Pose::Identity()), 1};
 }
 
 // A corner at (1, 1, 0): floor z = 0, walls x = 1 and y = 1.
@@ -31,14 +27,14 @@ TEST(Intersections, OfARoomsCorner) {
     EXPECT_EQ(lines[0].plane_a, 2);
     EXPECT_EQ(lines[0].plane_b, 4);
     for (const auto& end : {lines[0].from, lines[0].to}) {
-        EXPECT_NEAR(end.x(), 1, 1e-9);
-        EXPECT_NEAR(std::abs(end.y()), 1, 1e-9);
-        EXPECT_NEAR(end.z(), 0, 1e-9);
+        EXPECT_NEAR(end.x(), 1, 1e-6);
+        EXPECT_NEAR(std::abs(end.y()), 1, 1e-6);
+        EXPECT_NEAR(end.z(), 0, 1e-6);
     }
     const auto point = intersection_point(floor, wall_y, wall_x, {});
     ASSERT_TRUE(point);
     EXPECT_EQ(point->planes, (std::array<int, 3>{2, 4, 7}));
-    EXPECT_NEAR((point->position - Eigen::Vector3d(1, 1, 0)).norm(), 0, 1e-9);
+    EXPECT_NEAR((point->position - Eigen::Vector3f(1, 1, 0)).norm(), 0, 1e-6);
 }
 
 TEST(Intersections, AreCutToWhereBothAre) {
@@ -47,22 +43,23 @@ TEST(Intersections, AreCutToWhereBothAre) {
     wall.half_x = 0.3;
     const auto lines = intersection_lines(plane_of(1, kFloor), plane_of(2, wall), {});
     ASSERT_EQ(lines.size(), 1u);
-    EXPECT_NEAR((lines[0].to - lines[0].from).norm(), 0.6, 1e-9);
+    EXPECT_NEAR((lines[0].to - lines[0].from).norm(), 0.6, 1e-6);
 }
 
 TEST(Intersections, BreakAtADoor) {
     // The door reaches from the floor up, 0.8 m wide.
     Rectangle wall = kWallX;
     MapPlane with_door = plane_of(2, wall);
-    with_door.region.outline = {
+    Outline outline{
         {Ring{{-1, -1}, {-0.4, -1}, {-0.4, 0.9}, {0.4, 0.9}, {0.4, -1}, {1, -1}, {1, 1}, {-1, 1}}}};
     const Pose flip = facing({1, 0, 1}, {-1, 0, 0}, {0, 1, 0});
     // The face's y axis points down for this wall; put the door's foot on the floor.
     if (flip.linear().col(1).z() < 0)
-        for (auto& v : with_door.region.outline.rings[0]) v.y() = -v.y();
+        for (auto& v : outline.rings[0]) v.y() = -v.y();
+    with_door.outline = MapOutline(outline);
     const auto lines = intersection_lines(plane_of(1, kFloor), with_door, {});
     ASSERT_EQ(lines.size(), 2u);
-    for (const auto& line : lines) EXPECT_NEAR((line.to - line.from).norm(), 0.6, 1e-9);
+    for (const auto& line : lines) EXPECT_NEAR((line.to - line.from).norm(), 0.6, 1e-6);
 }
 
 TEST(Intersections, NeedAdjacency) {
@@ -92,7 +89,7 @@ TEST(Intersections, CrossingPlanesMeetInside) {
     const Rectangle upright{facing({0, 0, 0}, {1, 0, 0}, {0, 1, 0}), 0.5, 0.5, {}};
     const auto lines = intersection_lines(plane_of(1, kFloor), plane_of(2, upright), {});
     ASSERT_EQ(lines.size(), 1u);
-    EXPECT_NEAR((lines[0].to - lines[0].from).norm(), 1, 1e-9);
+    EXPECT_NEAR((lines[0].to - lines[0].from).norm(), 1, 1e-6);
 }
 
 }  // namespace

@@ -29,13 +29,9 @@ bot_core::images_t sample_images() {
 
 PlaneMap sample_map() {
     PlaneMap map;
-    MapPlane plane;
     for (int id : {1, 4, 9}) {
-        plane.id = id;
-        plane.region =
-            make_pose({0, 0, 0}, Eigen::Quaterniond(1, 0.1 * id, 0.03 * id * id, 0)) * test::sample_region();
-        plane.area = 1;
-        map.planes.push_back(plane);
+        const Pose pose = make_pose({0, 0, 0}, Eigen::Quaterniond(1, 0.1 * id, 0.03 * id * id, 0));
+        map.planes.emplace_back(id, pose * test::sample_region(), 1);
     }
     map.lines.push_back({1, 4, {0, 0, 0}, {1, 0, 0}});
     map.points.push_back({{1, 4, 9}, {0, 0, 1}});

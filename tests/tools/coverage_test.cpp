@@ -12,14 +12,13 @@ constexpr double kLeaf = 0.05;
 
 /// A plane at the given height with a square outline of 2 m and, if wanted, a hole of 1 m in its middle.
 MapPlane square(double z, bool with_hole = false) {
-    MapPlane plane;
-    plane.region.plane = {Eigen::Vector3d::UnitZ(), -z};
-    plane.region.box.frame_from_box.translation().z() = z;
-    plane.region.box.half_extents = {1, 1, 0.01};
-    plane.region.outline.rings.push_back({{-1, -1}, {1, -1}, {1, 1}, {-1, 1}});
-    if (with_hole) plane.region.outline.rings.push_back({{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}});
-    plane.area = area(plane.region.outline);
-    return plane;
+    PlanarRegion region;
+    region.plane = {Eigen::Vector3d::UnitZ(), -z};
+    region.box.frame_from_box.translation().z() = z;
+    region.box.half_extents = {1, 1, 0.01};
+    region.outline.rings.push_back({{-1, -1}, {1, -1}, {1, 1}, {-1, 1}});
+    if (with_hole) region.outline.rings.push_back({{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}});
+    return {0, region, 1};
 }
 
 PlaneMap map_of(std::vector<MapPlane> planes) {

@@ -46,9 +46,8 @@ class Neighbourhood {
     std::unordered_map<Cell, std::vector<Eigen::Vector3d>, CellHash> cells_;
 };
 
-bool is_explained(const PlaneMap& map, const Eigen::Vector3d& p, double reach) {
-    return std::any_of(map.planes.begin(), map.planes.end(), [&](const MapPlane& plane) {
-        const PlanarRegion& region = plane.region;
+bool is_explained(const std::vector<PlanarRegion>& planes, const Eigen::Vector3d& p, double reach) {
+    return std::any_of(planes.begin(), planes.end(), [&](const PlanarRegion& region) {
         // Cheap tests before the outline: the plane, then a circle around the box.
         if (std::abs(region.plane.signed_distance(p)) > reach) return false;
         const double apart = (p - region.box.frame_from_box.translation()).norm();
@@ -60,24 +59,26 @@ bool is_explained(const PlaneMap& map, const Eigen::Vector3d& p, double reach) {
 
 Coverage coverage_of(const PlaneMap& map, const std::vector<Eigen::Vector3d>& leaves, double leaf_m) {
     Coverage coverage;
+    std::vector<PlanarRegion> planes;
+    for (const MapPlane& plane : map.planes) planes.push_back(plane.region());
     if (!leaves.empty()) {
         const auto explained = std::count_if(leaves.begin(), leaves.end(), [&](const Eigen::Vector3d& leaf) {
-            return is_explained(map, leaf, leaf_m);
+            return is_explained(planes, leaf, leaf_m);
         });
         coverage.leaves_explained = static_cast<double>(explained) / static_cast<double>(leaves.size());
     }
     const Neighbourhood neighbourhood(leaves, leaf_m);
     const double step = leaf_m / 2;
     std::size_t samples = 0, supported = 0;
-    for (const MapPlane& plane : map.planes) {
-        const Box& box = plane.region.box;
+    for (const PlanarRegion& plane : planes) {
+        const Box& box = plane.box;
         // One cell of margin, because a simplified outline may reach out of the box a little.
         const int columns = static_cast<int>(std::ceil(2 * box.half_extents.x() / step)) + 4;
         const int rows = static_cast<int>(std::ceil(2 * box.half_extents.y() / step)) + 4;
         for (int i = 0; i < rows * columns; ++i) {
             const Eigen::Vector2d p =
                 step * Eigen::Vector2d(i % columns - 0.5 * (columns - 1), i / columns - 0.5 * (rows - 1));
-            if (!contains(plane.region.outline, p)) continue;
+            if (!contains(plane.outline, p)) continue;
             ++samples;
             supported += neighbourhood.has_near(box.frame_from_box * Eigen::Vector3d(p.x(), p.y(), 0));
         }

@@ -113,7 +113,7 @@ Json write_outputs(const std::filesystem::path& folder, const std::string& input
     const PlaneMap& map = pipeline.map().mapper().map();
     const Trajectory trajectory = pipeline.trajectory();
     write_trajectory(folder / "trajectory.txt", trajectory);
-    write_file(folder / "planes.json", planes_json(map));
+    write_file(folder / "planes.json", planes_json(map, pipeline.map().mapper().sightings()));
     write_file(folder / "planes.ply", planes_ply(map));
     write_file(folder / "plane_map.lcmlog", plane_map_log(map));
     write_file(folder / "overhead.svg", overhead_svg(map, trajectory));

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/plane_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+namespace planemap {
+
+namespace {
+
+constexpr double kMaxSteps = 32767;
+
+/// The axes that MapPlane::angle counts from: z the normal, x the first of world x, y that is not nearly
+/// along it, made square to it.
+Eigen::Matrix3d reference_axes(const Eigen::Vector3d& normal) {
+    return plane_axes(normal,
+                      std::abs(normal.x()) < 0.9 ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitY());
+}
+
+template <typename T>
+std::size_t heap_bytes(const std::vector<T>& v) {
+    return v.capacity() * sizeof(T);
+}
+
+}  // namespace
+
+const char* label_name(PlaneLabel label) {
+    switch (label) {
+        case PlaneLabel::kFloor:
+            return "floor";
+        case PlaneLabel::kCeiling:
+            return "ceiling";
+        case PlaneLabel::kWall:
+            return "wall";
+        case PlaneLabel::kHorizontal:
+            return "horizontal";
+        case PlaneLabel::kOther:
+            return "other";
+        case PlaneLabel::kUnknown:
+            break;
+    }
+    return "unknown";
+}
+
+MapOutline::MapOutline(const Outline& outline) {
+    double largest = 0;
+    std::size_t size = 0;
+    for (const Ring& ring : outline.rings) {
+        if (ring.size() > static_cast<std::size_t>(kMaxSteps))
+            throw std::length_error("an outline ring of " + std::to_string(ring.size()) + " vertices");
+        size += 1 + 2 * ring.size();
+        for (const auto& v : ring) largest = std::max(largest, v.cwiseAbs().maxCoeff());
+    }
+    unit = static_cast<float>(std::max(kUnit_m, largest / kMaxSteps));
+    packed.reserve(size);
+    const auto steps = [&](double metres) {
+        return static_cast<std::int16_t>(std::clamp(std::round(metres / unit), -kMaxSteps, kMaxSteps));
+    };
+    for (const Ring& ring : outline.rings) {
+        packed.push_back(static_cast<std::int16_t>(ring.size()));
+        for (const auto& v : ring) packed.insert(packed.end(), {steps(v.x()), steps(v.y())});
+    }
+}
+
+std::size_t MapOutline::ring_count() const {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < packed.size(); i += 1 + 2 * static_cast<std::size_t>(packed[i])) ++count;
+    return count;
+}
+
+std::size_t MapOutline::vertex_count() const {
+    return (packed.size() - ring_count()) / 2;
+}
+
+Outline MapOutline::rings() const {
+    Outline outline;
+    outline.rings.reserve(ring_count());
+    for (std::size_t i = 0; i < packed.size();) {
+        Ring& ring = outline.rings.emplace_back(static_cast<std::size_t>(packed[i++]));
+        for (Eigen::Vector2d& v : ring) {
+            v = static_cast<double>(unit) * Eigen::Vector2d(packed[i], packed[i + 1]);
+            i += 2;
+        }
+    }
+    return outline;
+}
+
+MapPlane::MapPlane(int plane_id, const PlanarRegion& region, std::size_t keyframe_count)
+    : id(plane_id),
+      keyframes(static_cast<std::int16_t>(std::min<std::size_t>(keyframe_count, 32767))),
+      normal(region.plane.normal.cast<float>()),
+      center(region.plane.project(region.box.frame_from_box.translation()).cast<float>()),
+      half_extents(region.box.half_extents.head<2>().cast<float>()),
+      rms(static_cast<float>(region.rms)),
+      inliers(static_cast<float>(region.moments.count)),
+      outline(region.outline) {
+    const Eigen::Vector3d x = reference_axes(normal.cast<double>().normalized()).transpose() *
+                              region.box.frame_from_box.linear().col(0);
+    angle = static_cast<float>(std::atan2(x.y(), x.x()));
+    area = static_cast<float>(planemap::area(outline.rings()));
+}
+
+Plane MapPlane::plane() const {
+    const Eigen::Vector3d n = normal.cast<double>().normalized();
+    return {n, -n.dot(center.cast<double>())};
+}
+
+Pose MapPlane::world_from_plane() const {
+    Pose pose = Pose::Identity();
+    pose.linear() =
+        reference_axes(normal.cast<double>().normalized()) *
+        Eigen::AngleAxisd(static_cast<double>(angle), Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    pose.translation() = center.cast<double>();
+    return pose;
+}
+
+Box MapPlane::box() const {
+    return {world_from_plane(), {half_extents.x(), half_extents.y(), 2.0 * static_cast<double>(rms)}};
+}
+
+PlanarRegion MapPlane::region() const {
+    PlanarRegion region;
+    region.plane = plane();
+    region.moments.count = inliers;
+    region.box = box();
+    region.outline = outline.rings();
+    region.rms = rms;
+    return region;
+}
+
+double distance(const MapPlane& plane, const Eigen::Vector3d& p_world) {
+    const Eigen::Vector3d p = plane.world_from_plane().inverse(Eigen::Isometry) * p_world;
+    return std::hypot(distance(plane.outline.rings(), p.head<2>()), p.z());
+}
+
+const MapPlane* PlaneMap::find(int id) const {
+    const auto at = std::lower_bound(planes.begin(), planes.end(), id,
+                                     [](const MapPlane& plane, int wanted) { return plane.id < wanted; });
+    return at != planes.end() && at->id == id ? &*at : nullptr;
+}
+
+std::size_t memory_bytes(const PlaneMap& map) {
+    std::size_t bytes = sizeof map + heap_bytes(map.planes) + heap_bytes(map.lines) + heap_bytes(map.points);
+    for (const MapPlane& plane : map.planes) bytes += heap_bytes(plane.outline.packed);
+    return bytes;
+}
+
+}  // namespace planemap
