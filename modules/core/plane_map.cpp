@@ -91,16 +91,23 @@ Outline MapOutline::rings() const {
 MapPlane::MapPlane(int plane_id, const PlanarRegion& region, std::size_t keyframe_count)
     : id(plane_id),
       keyframes(static_cast<std::int16_t>(std::min<std::size_t>(keyframe_count, 32767))),
-      normal(region.plane.normal.cast<float>()),
-      center(region.plane.project(region.box.frame_from_box.translation()).cast<float>()),
       half_extents(region.box.half_extents.head<2>().cast<float>()),
       rms(static_cast<float>(region.rms)),
       inliers(static_cast<float>(region.moments.count)),
       outline(region.outline) {
-    const Eigen::Vector3d x = reference_axes(normal.cast<double>().normalized()).transpose() *
-                              region.box.frame_from_box.linear().col(0);
-    angle = static_cast<float>(std::atan2(x.y(), x.x()));
+    lay(region.plane, region.box.frame_from_box.translation(), region.box.frame_from_box.linear().col(0));
     area = static_cast<float>(planemap::area(outline.rings()));
+}
+
+void MapPlane::lay(const Plane& plane_world, const Eigen::Vector3d& box_center, const Eigen::Vector3d& box_x) {
+    normal = plane_world.normal.cast<float>();
+    center = plane_world.project(box_center).cast<float>();
+    const Eigen::Vector3d x = reference_axes(normal.cast<double>().normalized()).transpose() * box_x;
+    angle = static_cast<float>(std::atan2(x.y(), x.x()));
+}
+
+void MapPlane::move_to(const Plane& plane_world) {
+    lay(plane_world, center.cast<double>(), world_from_plane().linear().col(0));
 }
 
 Plane MapPlane::plane() const {

@@ -62,6 +62,9 @@ struct MapPlane {
     /// From a region in the world frame; the area is the outline's.
     MapPlane(int plane_id, const PlanarRegion& region_world, std::size_t keyframe_count);
 
+    /// Lays the plane anew, its outline and box with it.
+    void move_to(const Plane& plane_world);
+
     /// n.p + d = 0 in the world frame.
     Plane plane() const;
     /// Where the outline's x, y, 0 lies in the world.
@@ -70,6 +73,9 @@ struct MapPlane {
     Box box() const;
     /// Plane, box, outline, rms and moments.count; the other moments are zero.
     PlanarRegion region() const;
+
+  private:
+    void lay(const Plane& plane_world, const Eigen::Vector3d& box_center, const Eigen::Vector3d& box_x);
 };
 
 /// Distance from a point to the plane's outline, metres, world frame.

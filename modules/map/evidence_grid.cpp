@@ -2,7 +2,6 @@
 #include "map/evidence_grid.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace planemap {
@@ -33,6 +32,12 @@ Outline simplified_without_crossings(const Outline& outline, double tolerance) {
     return outline;
 }
 
+/// Bits that are set after an odd number of set bits, themselves included: prefix parity.
+std::uint64_t parity_up_to(std::uint64_t bits) {
+    for (const int shift : {1, 2, 4, 8, 16, 32}) bits ^= bits << shift;
+    return bits;
+}
+
 }  // namespace
 
 bool rings_cross(const Outline& outline) {
@@ -53,116 +58,199 @@ bool rings_cross(const Outline& outline) {
     return false;
 }
 
-EvidenceGrid::Cells EvidenceGrid::cells_around(std::span<const Eigen::Vector2d> points) const {
-    Eigen::Vector2d low = points[0], high = points[0];
-    for (const auto& p : points) {
-        low = low.cwiseMin(p);
-        high = high.cwiseMax(p);
+void FlatPolygon::assign(const Outline& outline) {
+    clear();
+    for (const Ring& ring : outline.rings) {
+        vertices.insert(vertices.end(), ring.begin(), ring.end());
+        ring_ends.push_back(vertices.size());
     }
-    const auto cell = [this](double metres) { return static_cast<int>(std::floor(metres / cell_m_)); };
-    return {cell(low.x()), cell(low.y()), cell(high.x()) + 1, cell(high.y()) + 1};
 }
 
-void EvidenceGrid::grow(const Cells& needed) {
-    if (!views_.empty() && needed.x0 >= x0_ && needed.y0 >= y0_ && needed.x1 <= x0_ + width_ &&
-        needed.y1 <= y0_ + height_) {
+std::uint64_t EvidenceGrid::Cells::at_least(int hits) const {
+    // hit >= hits: greater at the highest bit that differs, or equal.
+    std::uint64_t greater = 0, equal = ~std::uint64_t{0};
+    for (int s = 3; s >= 0; --s) {
+        const std::uint64_t bit = hit[static_cast<std::size_t>(s)];
+        if ((hits >> s & 1) != 0) {
+            equal &= bit;
+        } else {
+            greater |= equal & bit;
+            equal &= ~bit;
+        }
+    }
+    return greater | equal;
+}
+
+/// Looked through more often than seen.
+std::uint64_t EvidenceGrid::Cells::refuted() const {
+    std::uint64_t greater = 0, equal = ~std::uint64_t{0};
+    for (std::size_t s = 4; s-- > 0;) {
+        greater |= equal & miss[s] & ~hit[s];
+        equal &= ~(miss[s] ^ hit[s]);
+    }
+    return greater;
+}
+
+/// Adds 2^strength to the counts of the cells; they stay at 15.
+void EvidenceGrid::count(std::array<std::uint64_t, 4>& counts, std::uint64_t cells, int strength) {
+    std::uint64_t carry = cells;
+    for (auto s = static_cast<std::size_t>(strength); s < counts.size(); ++s) {
+        const std::uint64_t both = counts[s] & carry;
+        counts[s] ^= carry;
+        carry = both;
+    }
+    for (std::uint64_t& bits : counts) bits |= carry;
+}
+
+/// Room for the words [word_from, word_to) of the rows [y_from, y_to).
+void EvidenceGrid::grow(int word_from, int y_from, int word_to, int y_to) {
+    if (!cells_.empty() && word_from >= word0_ && y_from >= y0_ && word_to <= word0_ + words_ &&
+        y_to <= y0_ + rows_) {
         return;
     }
-    // Some room to spare on the sides that grow, so that a plane explored slowly is not copied every time.
-    Cells to = needed;
-    if (!views_.empty()) {
-        const int spare_x = 8 + width_ / 8, spare_y = 8 + height_ / 8;
-        to.x0 = needed.x0 < x0_ ? needed.x0 - spare_x : x0_;
-        to.y0 = needed.y0 < y0_ ? needed.y0 - spare_y : y0_;
-        to.x1 = needed.x1 > x0_ + width_ ? needed.x1 + spare_x : x0_ + width_;
-        to.y1 = needed.y1 > y0_ + height_ ? needed.y1 + spare_y : y0_ + height_;
+    int w0 = word_from, y0 = y_from, w1 = word_to, y1 = y_to;
+    if (!cells_.empty()) {
+        // Some rows to spare on the sides that grow, so that a plane explored slowly is not copied each time.
+        const int spare = 8 + rows_ / 8;
+        w0 = std::min(w0, word0_);
+        w1 = std::max(w1, word0_ + words_);
+        y0 = y_from < y0_ ? y_from - spare : y0_;
+        y1 = y_to > y0_ + rows_ ? y_to + spare : y0_ + rows_;
     }
-    const int width = to.x1 - to.x0, height = to.y1 - to.y0;
-    std::vector<std::uint8_t> views(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0);
-    for (int y = y0_; y < y0_ + height_; ++y) {
-        const std::uint8_t* from = row(y) + x0_;
-        std::copy(from, from + width_,
-                  views.begin() + static_cast<std::ptrdiff_t>(y - to.y0) * width + (x0_ - to.x0));
+    std::vector<Cells> cells(static_cast<std::size_t>(w1 - w0) * static_cast<std::size_t>(y1 - y0));
+    for (int y = y0_; y < y0_ + rows_; ++y) {
+        std::copy(row(y), row(y) + words_,
+                  cells.begin() + static_cast<std::ptrdiff_t>(y - y0) * (w1 - w0) + (word0_ - w0));
     }
-    views_ = std::move(views);
-    x0_ = to.x0, y0_ = to.y0, width_ = width, height_ = height;
+    cells_ = std::move(cells);
+    word0_ = w0, y0_ = y0, words_ = w1 - w0, rows_ = y1 - y0;
 }
 
-void EvidenceGrid::add(const Outline& outline_grid) {
-    std::vector<Eigen::Vector2d> vertices;
-    for (const Ring& ring : outline_grid.rings) vertices.insert(vertices.end(), ring.begin(), ring.end());
-    if (vertices.empty()) return;
-    const Cells cells = cells_around(vertices);
-    grow(cells);
+int EvidenceGrid::add(const FlatPolygon& polygon, int strength) {
+    if (polygon.vertices.empty()) return 0;
+    Eigen::Vector2d low = polygon.vertices[0], high = low;
+    for (const auto& v : polygon.vertices) {
+        low = low.cwiseMin(v);
+        high = high.cwiseMax(v);
+    }
+    const double per_cell = 1 / cell_m_;
+    const auto cell = [&](double metres) { return static_cast<int>(std::floor(metres * per_cell)); };
+    const int y_from = cell(low.y()), y_to = cell(high.y()) + 1;
+    const int word_from = cell(low.x()) >> 6, word_to = ((cell(high.x()) + 1) >> 6) + 1;
+    grow(word_from, y_from, word_to, y_to);
 
     // Each edge flips, in every row whose centre line it crosses, all cells to its right: what is flipped an
-    // odd number of times is inside. One column more, for flips right of the last cell.
-    const int width = cells.x1 - cells.x0 + 1, height = cells.y1 - cells.y0;
-    std::vector<std::uint8_t> flips(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0);
-    for (const Ring& ring : outline_grid.rings) {
-        for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
-            const Eigen::Vector2d origin(cells.x0 + 0.5, cells.y0 + 0.5);  // centre of the first cell
-            Eigen::Vector2d a = ring[j] / cell_m_ - origin, b = ring[i] / cell_m_ - origin;
+    // odd number of times is inside.
+    const int words = word_to - word_from, rows = y_to - y_from;
+    flips_.assign(static_cast<std::size_t>(words) * static_cast<std::size_t>(rows), 0);
+    const Eigen::Vector2d first_centre(64.0 * word_from + 0.5, y_from + 0.5);
+    std::size_t begin = 0;
+    for (const std::size_t end : polygon.ring_ends) {
+        for (std::size_t i = begin, j = end - 1; i < end; j = i++) {
+            Eigen::Vector2d a = per_cell * polygon.vertices[j] - first_centre;
+            Eigen::Vector2d b = per_cell * polygon.vertices[i] - first_centre;
             if (a.y() > b.y()) std::swap(a, b);
             const int from = std::max(0, static_cast<int>(std::ceil(a.y())));
-            const int to = std::min(height, static_cast<int>(std::ceil(b.y())));
+            const int to = std::min(rows, static_cast<int>(std::ceil(b.y())));
+            if (from >= to) continue;
             const double slope = (b.x() - a.x()) / (b.y() - a.y());
-            for (int y = from; y < to; ++y) {
-                const double x = std::ceil(a.x() + (y - a.y()) * slope);
-                flips[static_cast<std::size_t>(y * width + std::clamp(static_cast<int>(x), 0, width - 1))] ^=
-                    1;
+            double x = a.x() + (from - a.y()) * slope;
+            for (int y = from; y < to; ++y, x += slope) {
+                const int at = std::clamp(static_cast<int>(std::ceil(x)), 0, 64 * words - 1);
+                flips_[static_cast<std::size_t>(y * words + (at >> 6))] ^= std::uint64_t{1} << (at & 63);
             }
         }
+        begin = end;
     }
-    for (int y = 0; y < height; ++y) {
-        const std::uint8_t* flip = flips.data() + static_cast<std::ptrdiff_t>(y) * width;
-        std::uint8_t* view = row(cells.y0 + y) + cells.x0;
-        std::uint8_t inside = 0;
-        for (int x = 0; x + 1 < width; ++x) {
-            inside = static_cast<std::uint8_t>(inside ^ flip[x]);
-            view[x] = static_cast<std::uint8_t>(view[x] + (inside & (view[x] != 255)));
+    int fresh = 0;
+    for (int y = 0; y < rows; ++y) {
+        const std::uint64_t* flips = flips_.data() + static_cast<std::ptrdiff_t>(y) * words;
+        Cells* cells = row(y_from + y) + (word_from - word0_);
+        std::uint64_t carried = 0;  // all ones while inside
+        for (int w = 0; w < words; ++w) {
+            const std::uint64_t inside = parity_up_to(flips[w]) ^ carried;
+            carried = (inside >> 63) != 0 ? ~std::uint64_t{0} : 0;
+            if (inside == 0) continue;
+            fresh += std::popcount(inside & ~cells[w].at_least(1));
+            count(cells[w].hit, inside, strength);
         }
     }
+    return fresh;
 }
 
 void EvidenceGrid::add(const EvidenceGrid& other) {
     if (other.empty()) return;
     const Pose other_from_grid = other.world_from_grid_.inverse(Eigen::Isometry) * world_from_grid_;
     const Pose grid_from_other = other_from_grid.inverse(Eigen::Isometry);
-    std::array<Eigen::Vector2d, 4> corners;
-    for (std::size_t i = 0; i < 4; ++i) {
-        const double x = other.cell_m_ * (other.x0_ + (i & 1 ? other.width_ : 0));
-        const double y = other.cell_m_ * (other.y0_ + (i & 2 ? other.height_ : 0));
-        corners[i] = (grid_from_other * Eigen::Vector3d(x, y, 0)).head<2>();
+    Eigen::Vector2d low = Eigen::Vector2d::Constant(1e300), high = -low;
+    for (const int i : {0, 1, 2, 3}) {
+        const double x = other.cell_m_ * (64.0 * (other.word0_ + (i & 1 ? other.words_ : 0)));
+        const double y = other.cell_m_ * (other.y0_ + (i & 2 ? other.rows_ : 0));
+        const Eigen::Vector2d corner = (grid_from_other * Eigen::Vector3d(x, y, 0)).head<2>();
+        low = low.cwiseMin(corner);
+        high = high.cwiseMax(corner);
     }
-    const Cells cells = cells_around(corners);
-    grow(cells);
-    for (int y = cells.y0; y < cells.y1; ++y) {
-        std::uint8_t* view = row(y);
-        for (int x = cells.x0; x < cells.x1; ++x) {
-            const Eigen::Vector3d centre(cell_m_ * (x + 0.5), cell_m_ * (y + 0.5), 0);
-            const int views = view[x] + other.views((other_from_grid * centre).head<2>());
-            view[x] = static_cast<std::uint8_t>(std::min(views, 255));
+    const auto cell = [&](double metres) { return static_cast<int>(std::floor(metres / cell_m_)); };
+    const int x_from = cell(low.x()), x_to = cell(high.x()) + 1;
+    const int y_from = cell(low.y()), y_to = cell(high.y()) + 1;
+    grow(x_from >> 6, y_from, ((x_to - 1) >> 6) + 1, y_to);
+    const Eigen::Vector2d step = cell_m_ * other_from_grid.linear().col(0).head<2>();
+    for (int y = y_from; y < y_to; ++y) {
+        Eigen::Vector2d p =
+            (other_from_grid * Eigen::Vector3d(cell_m_ * (x_from + 0.5), cell_m_ * (y + 0.5), 0)).head<2>();
+        for (int x = x_from; x < x_to; ++x, p += step) {
+            const Counts theirs = other.counts(p);
+            if (theirs.hits == 0 && theirs.misses == 0) continue;
+            Cells& here = row(y)[(x >> 6) - word0_];
+            const std::uint64_t bit = std::uint64_t{1} << (x & 63);
+            for (const int strength : {0, 1, 2, 3}) {
+                if ((theirs.hits >> strength & 1) != 0) count(here.hit, bit, strength);
+                if ((theirs.misses >> strength & 1) != 0) count(here.miss, bit, strength);
+            }
         }
     }
 }
 
-int EvidenceGrid::views(const Eigen::Vector2d& p_grid) const {
-    const double x = std::floor(p_grid.x() / cell_m_) - x0_, y = std::floor(p_grid.y() / cell_m_) - y0_;
-    if (!(x >= 0 && y >= 0 && x < width_ && y < height_)) return 0;
-    return views_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
-                  static_cast<std::size_t>(x)];
+EvidenceGrid::Counts EvidenceGrid::counts(const Eigen::Vector2d& p_grid) const {
+    const double x = std::floor(p_grid.x() / cell_m_), y = std::floor(p_grid.y() / cell_m_);
+    if (!(x >= 64.0 * word0_ && y >= y0_ && x < 64.0 * (word0_ + words_) && y < y0_ + rows_)) return {};
+    const int cx = static_cast<int>(x);
+    const Cells& cells = row(static_cast<int>(y))[(cx >> 6) - word0_];
+    Counts counts;
+    for (int s = 0; s < 4; ++s) {
+        counts.hits |= static_cast<int>(cells.hit[static_cast<std::size_t>(s)] >> (cx & 63) & 1) << s;
+        counts.misses |= static_cast<int>(cells.miss[static_cast<std::size_t>(s)] >> (cx & 63) & 1) << s;
+    }
+    return counts;
 }
 
 Outline EvidenceGrid::outline(const OutlineOptions& options) const {
-    Mask mask(width_, height_);
-    for (std::size_t i = 0; i < views_.size(); ++i) mask.cells[i] = views_[i] >= options.min_views;
-    Outline outline = trace(mask);
+    if (cells_.empty()) return {};
+    constexpr int kSpare = 2, kWellSupported = 8;
+    Bitmap shape(word0_ - 1, y0_ - kSpare, words_ + 2, rows_ + 2 * kSpare);
+    Bitmap sure = shape, refuted = shape;
+    for (int y = y0_; y < y0_ + rows_; ++y) {
+        const Cells* cells = row(y);
+        for (int w = 0; w < words_; ++w) {
+            const std::uint64_t against = cells[w].refuted();
+            shape.row(y)[w + 1] = cells[w].at_least(options.min_hits) & ~against;
+            sure.row(y)[w + 1] = cells[w].at_least(kWellSupported) & ~against;
+            refuted.row(y)[w + 1] = ~against;
+        }
+    }
+    Bitmap solid = shape.closed(1);
+    for (int y = y0_; y < y0_ + rows_; ++y) {
+        for (int w = 0; w < words_; ++w) solid.row(y)[w + 1] &= refuted.row(y)[w + 1];
+    }
+    Bitmap kept = solid.opened(1);
+    sure &= shape;
+    kept |= sure;
+    Outline outline = kept.trace();
     std::erase_if(outline.rings, [&](const Ring& ring) {
         return std::abs(signed_area(ring)) * cell_m_ * cell_m_ < options.min_ring_m2;
     });
     for (Ring& ring : outline.rings) {
-        for (Eigen::Vector2d& vertex : ring) vertex = cell_m_ * (vertex + Eigen::Vector2d(x0_, y0_));
+        for (Eigen::Vector2d& vertex : ring) vertex *= cell_m_;
     }
     return simplified_without_crossings(outline, options.tolerance_m);
 }

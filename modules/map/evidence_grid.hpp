@@ -1,64 +1,132 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
+#include <bit>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "core/outline.hpp"
 #include "core/pose.hpp"
+#include "map/bitmap.hpp"
 
 namespace planemap {
 
 /// How a plane's shape is read off its evidence.
 struct OutlineOptions {
-    int min_views = 1;          ///< cells seen in fewer keyframes' regions are not part of the shape
+    int min_hits = 1;           ///< evidence a cell needs to be part of the shape, 1 to 15
     double min_ring_m2 = 0.01;  ///< smaller parts and smaller holes are left out
     double tolerance_m = 0.03;  ///< no traced vertex is further than this from the simplified outline
 };
 
-/// Where a plane has been seen: a raster in the plane that counts, cell by cell, how many regions covered it.
-/// The union of regions is exact up to the cell size however many there are, so it grows with the plane's
-/// extent and not with the number of views. Cells are aligned to the origin of the grid's frame.
+/// A polygon with holes for drawing: the vertices of all rings one after the other. Even-odd rule.
+struct FlatPolygon {
+    std::vector<Eigen::Vector2d> vertices;
+    std::vector<std::size_t> ring_ends;  ///< past the last vertex of each ring
+
+    void clear() {
+        vertices.clear();
+        ring_ends.clear();
+    }
+    void assign(const Outline& outline);
+};
+
+/// Where a plane has been seen and where it was looked through: a raster in the plane that counts both for
+/// each cell, 0 to 15. The counts of 64 neighbouring cells are kept bit by bit in the same words, so that a
+/// region is added to 64 cells at once. It grows with the plane's extent and not with the number of views.
+/// Cells are aligned to the origin of the grid's frame.
 class EvidenceGrid {
   public:
+    static constexpr int kMaxCount = 15;
+
     EvidenceGrid() = default;
     /// An empty grid; x and y of the frame lie in the plane, z is its normal.
     EvidenceGrid(const Pose& world_from_grid, double cell_m)
         : world_from_grid_(world_from_grid), cell_m_(cell_m) {}
 
     const Pose& world_from_grid() const { return world_from_grid_; }
-    bool empty() const { return views_.empty(); }
-    std::size_t cell_count() const { return views_.size(); }
+    double cell_m() const { return cell_m_; }
+    bool empty() const { return cells_.empty(); }
+    std::size_t memory_bytes() const { return cells_.capacity() * sizeof(Cells); }
 
-    /// Counts one view of every cell whose centre lies inside the rings (even-odd rule; metres in the grid's
-    /// x, y).
-    void add(const Outline& outline_grid);
-    /// Adds another grid's views, resampled to this one's cells.
+    /// Adds 2^strength hits (strength 0 to 2) to every cell whose centre lies inside the polygon (metres in
+    /// the grid's x, y). Returns how many cells were hit for the first time.
+    int add(const FlatPolygon& polygon_grid, int strength);
+    /// Adds another grid's counts, resampled to this one's cells.
     void add(const EvidenceGrid& other);
 
-    /// Views of the cell that holds a point (metres in the grid's x, y).
-    int views(const Eigen::Vector2d& p_grid) const;
-    /// The shape, metres in the grid's x and y; its rings do not cross.
+    /// Counts of the cell that holds a point (metres in the grid's x, y).
+    struct Counts {
+        int hits = 0, misses = 0;
+    };
+    Counts counts(const Eigen::Vector2d& p_grid) const;
+
+    /// Calls `seen_through(p_grid)` once for the middle of each block of 4 x 4 cells of which some have been
+    /// hit less than `below` hits, and where it returns true adds `misses` (1, 2 or 4) to those cells.
+    /// Returns how many cells left the shape by it.
+    template <typename SeenThrough>
+    int doubt(int below, int strength, const SeenThrough& seen_through);
+
+    /// The shape: cells with enough hits and no more misses than hits; slits of up to two cells closed,
+    /// slivers of up to two cells left out unless they are well supported. Metres in the grid's x and y; its
+    /// rings do not cross.
     Outline outline(const OutlineOptions& options) const;
 
   private:
+    /// 64 cells: bit s of the counts of all of them is one word.
     struct Cells {
-        int x0, y0, x1, y1;  ///< half-open range of cells
+        std::array<std::uint64_t, 4> hit{}, miss{};
+
+        std::uint64_t at_least(int hits) const;
+        std::uint64_t refuted() const;
     };
 
-    /// The cells that can hold the points.
-    Cells cells_around(std::span<const Eigen::Vector2d> points) const;
-    void grow(const Cells& needed);
-    std::uint8_t* row(int y) { return views_.data() + static_cast<std::ptrdiff_t>(y - y0_) * width_ - x0_; }
+    void grow(int word_from, int y_from, int word_to, int y_to);
+    Cells* row(int y) { return cells_.data() + static_cast<std::ptrdiff_t>(y - y0_) * words_; }
+    const Cells* row(int y) const { return cells_.data() + static_cast<std::ptrdiff_t>(y - y0_) * words_; }
+    static void count(std::array<std::uint64_t, 4>& counts, std::uint64_t cells, int strength);
 
     Pose world_from_grid_ = Pose::Identity();
     double cell_m_ = 0.025;
-    int x0_ = 0, y0_ = 0, width_ = 0, height_ = 0;  ///< cells stored
-    std::vector<std::uint8_t> views_;               ///< row-major, saturating
+    int word0_ = 0, y0_ = 0, words_ = 0, rows_ = 0;  ///< stored: word w holds the cells x = 64 w to 64 w + 63
+    std::vector<Cells> cells_;
+    std::vector<std::uint64_t> flips_;  ///< scratch of add()
 };
 
 /// True when two edges of the rings cross at inner points of both. Touching is not crossing.
 bool rings_cross(const Outline& outline);
+
+// ---------------------------------------------------------------------------------------------------------
+
+template <typename SeenThrough>
+int EvidenceGrid::doubt(int below, int strength, const SeenThrough& seen_through) {
+    int lost = 0;
+    for (int y = y0_; y < y0_ + rows_; y += 4) {
+        const int y_end = y + 4 < y0_ + rows_ ? y + 4 : y0_ + rows_;
+        for (int w = 0; w < words_; ++w) {
+            std::array<std::uint64_t, 4> weak{};
+            std::uint64_t any = 0;
+            for (int r = y; r < y_end; ++r) {
+                const Cells& c = row(r)[w];
+                weak[static_cast<std::size_t>(r - y)] = c.at_least(1) & ~c.at_least(below) & ~c.refuted();
+                any |= weak[static_cast<std::size_t>(r - y)];
+            }
+            for (int nibble = 0; any != 0; ++nibble, any >>= 4) {
+                if ((any & 15) == 0) continue;
+                const std::uint64_t block = std::uint64_t{15} << (4 * nibble);
+                const Eigen::Vector2d middle(cell_m_ * (64.0 * (word0_ + w) + 4.0 * nibble + 2.0),
+                                             cell_m_ * (0.5 * (y + y_end)));
+                if (!seen_through(middle)) continue;
+                for (int r = y; r < y_end; ++r) {
+                    Cells& c = row(r)[w];
+                    const std::uint64_t cells = weak[static_cast<std::size_t>(r - y)] & block;
+                    count(c.miss, cells, strength);
+                    lost += std::popcount(cells & c.refuted());
+                }
+            }
+        }
+    }
+    return lost;
+}
 
 }  // namespace planemap

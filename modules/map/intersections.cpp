@@ -3,6 +3,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace planemap {
@@ -48,29 +49,29 @@ Intervals joined(Intervals intervals, double bridge) {
 }
 
 /// Where along the line the plane is within the gap of it: the outline is cut by lines parallel to it.
-Intervals along_line(const MapPlane& plane, const Line& line, double gap) {
-    const Pose box_from_world = plane.world_from_plane().inverse(Eigen::Isometry);
-    const Outline outline = plane.outline.rings();
+Intervals along_line(const PlaneShape& shape, const Line& line, double gap) {
+    const Pose box_from_world = shape.box.frame_from_box.inverse(Eigen::Isometry);
     const Eigen::Vector2d origin = (box_from_world * line.origin).head<2>();
     const Eigen::Vector2d along = (box_from_world.linear() * line.direction).head<2>().normalized();
     const Eigen::Vector2d across(-along.y(), along.x());
-    constexpr int kCuts = 4;  // on each side
-    Intervals intervals;
-    std::vector<double> crossings;
-    for (int cut = -kCuts; cut <= kCuts; ++cut) {
-        const double height = gap * cut / kCuts;
-        crossings.clear();
-        for (const Ring& ring : outline.rings) {
-            for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
-                const double a = across.dot(ring[j] - origin) - height;
-                const double b = across.dot(ring[i] - origin) - height;
-                if ((a > 0) == (b > 0)) continue;
-                crossings.push_back(along.dot(ring[j] + a / (a - b) * (ring[i] - ring[j]) - origin));
+    constexpr std::size_t kCuts = 7;  // parallel to the line, the middle one on it
+    std::array<std::vector<double>, kCuts> crossings;
+    for (const Ring& ring : shape.outline.rings) {
+        for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
+            const double a = across.dot(ring[j] - origin), b = across.dot(ring[i] - origin);
+            if (std::min(a, b) > gap || std::max(a, b) < -gap) continue;
+            for (std::size_t cut = 0; cut < kCuts; ++cut) {
+                const double height = gap * (2.0 * static_cast<double>(cut) / (kCuts - 1) - 1);
+                if ((a > height) == (b > height)) continue;
+                const Eigen::Vector2d at = ring[j] + (height - a) / (b - a) * (ring[i] - ring[j]);
+                crossings[cut].push_back(along.dot(at - origin));
             }
         }
-        std::sort(crossings.begin(), crossings.end());
-        for (std::size_t k = 0; k + 1 < crossings.size(); k += 2)
-            intervals.push_back({crossings[k], crossings[k + 1]});
+    }
+    Intervals intervals;
+    for (std::vector<double>& ends : crossings) {
+        std::sort(ends.begin(), ends.end());
+        for (std::size_t k = 0; k + 1 < ends.size(); k += 2) intervals.push_back({ends[k], ends[k + 1]});
     }
     return joined(std::move(intervals), gap);
 }
@@ -88,17 +89,26 @@ Intervals overlap(const Intervals& a, const Intervals& b) {
 
 }  // namespace
 
-std::vector<IntersectionLine> intersection_lines(const MapPlane& a, const MapPlane& b,
+PlaneShape::PlaneShape(const MapPlane& map_plane)
+    : id(map_plane.id), plane(map_plane.plane()), box(map_plane.box()), outline(map_plane.outline.rings()) {
+    const Eigen::Matrix3d& axes = box.frame_from_box.linear();
+    const Eigen::Vector3d reach = axes.cwiseAbs() * box.half_extents,
+                          center = box.frame_from_box.translation();
+    low = center - reach;
+    high = center + reach;
+}
+
+std::vector<IntersectionLine> intersection_lines(const PlaneShape& a, const PlaneShape& b,
                                                  const AdjacencyRules& rules) {
-    const MapPlane &first = a.id < b.id ? a : b, &second = a.id < b.id ? b : a;
-    const Plane plane_a = first.plane(), plane_b = second.plane();
-    const Box box_a = first.box(), box_b = second.box();
-    // The common line lies in both planes, so neither box may be further from the other's plane.
-    const double reach = box_a.half_extents.norm() + box_b.half_extents.norm() + 2 * rules.gap_m;
-    if ((box_a.frame_from_box.translation() - box_b.frame_from_box.translation()).norm() > reach ||
-        distance_to(plane_a, box_b) > rules.gap_m || distance_to(plane_b, box_a) > rules.gap_m) {
+    const PlaneShape &first = a.id < b.id ? a : b, &second = a.id < b.id ? b : a;
+    if (!((a.low.array() <= b.high.array() + 2 * rules.gap_m) &&
+          (b.low.array() <= a.high.array() + 2 * rules.gap_m))
+             .all())
         return {};
-    }
+    const Plane &plane_a = first.plane, &plane_b = second.plane;
+    const Box &box_a = first.box, &box_b = second.box;
+    // The common line lies in both planes, so neither box may be further from the other's plane.
+    if (distance_to(plane_a, box_b) > rules.gap_m || distance_to(plane_b, box_a) > rules.gap_m) return {};
     const auto line = common_line(plane_a, plane_b, rules.min_angle_rad);
     if (!line) return {};
     const Intervals on_first = along_line(first, *line, rules.gap_m);
@@ -114,18 +124,19 @@ std::vector<IntersectionLine> intersection_lines(const MapPlane& a, const MapPla
     return lines;
 }
 
-std::optional<IntersectionPoint> intersection_point(const MapPlane& a, const MapPlane& b, const MapPlane& c,
-                                                    const AdjacencyRules& rules) {
+std::optional<IntersectionPoint> intersection_point(const PlaneShape& a, const PlaneShape& b,
+                                                    const PlaneShape& c, const AdjacencyRules& rules) {
     Eigen::Matrix3d rows;
-    const Plane plane_a = a.plane(), plane_b = b.plane(), plane_c = c.plane();
+    const Plane &plane_a = a.plane, &plane_b = b.plane, &plane_c = c.plane;
     rows << plane_a.normal.transpose(), plane_b.normal.transpose(), plane_c.normal.transpose();
     // The volume spanned by the normals: small when the three planes nearly share a line.
     if (std::abs(rows.determinant()) < std::pow(std::sin(rules.min_angle_rad), 2)) return std::nullopt;
     const Eigen::Vector3d position = rows.inverse() * -Eigen::Vector3d(plane_a.d, plane_b.d, plane_c.d);
     IntersectionPoint point;
     point.position = position.cast<float>();
-    for (const MapPlane* plane : {&a, &b, &c}) {
-        if (distance(*plane, position) > rules.gap_m) return std::nullopt;
+    for (const PlaneShape* shape : {&a, &b, &c}) {
+        const Eigen::Vector3d p = shape->box.frame_from_box.inverse(Eigen::Isometry) * position;
+        if (distance(shape->outline, p.head<2>()) > rules.gap_m) return std::nullopt;
     }
     point.planes = {a.id, b.id, c.id};
     std::sort(point.planes.begin(), point.planes.end());

@@ -16,14 +16,26 @@ struct AdjacencyRules {
     double min_length_m = 0.15;     ///< shorter pieces of the line are left out
 };
 
+/// A plane of the map unpacked for cutting it with others.
+struct PlaneShape {
+    int id = -1;
+    Plane plane;
+    Box box;
+    Eigen::Vector3d low = Eigen::Vector3d::Zero(), high = Eigen::Vector3d::Zero();  ///< of the box
+    Outline outline;                                                                ///< in the box's x and y
+
+    PlaneShape() = default;
+    explicit PlaneShape(const MapPlane& map_plane);
+};
+
 /// The pieces of the common line of two planes that lie within the gap of both outlines, in order along the
 /// line; empty for planes that are nearly parallel or not adjacent. An outline that is broken (a door in a
 /// wall) breaks the line there too.
-std::vector<IntersectionLine> intersection_lines(const MapPlane& a, const MapPlane& b,
+std::vector<IntersectionLine> intersection_lines(const PlaneShape& a, const PlaneShape& b,
                                                  const AdjacencyRules& rules);
 
 /// The common point of three planes, if it is well-defined and within the gap of all three outlines.
-std::optional<IntersectionPoint> intersection_point(const MapPlane& a, const MapPlane& b, const MapPlane& c,
-                                                    const AdjacencyRules& rules);
+std::optional<IntersectionPoint> intersection_point(const PlaneShape& a, const PlaneShape& b,
+                                                    const PlaneShape& c, const AdjacencyRules& rules);
 
 }  // namespace planemap

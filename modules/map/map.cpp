@@ -2,13 +2,13 @@
 #include "map/map.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numbers>
 #include <set>
+#include <thread>
 
 #include "core/validation.hpp"
-#include "map/intersections.hpp"
-#include "map/merging.hpp"
 
 namespace planemap {
 
@@ -17,18 +17,21 @@ namespace {
 constexpr double kRadPerDeg = std::numbers::pi / 180;
 /// Further out, doubles no longer hold second moments to a millimetre.
 constexpr double kMaxCoordinate_m = 1e5;
-/// A raster whose frame is tilted further against its plane is drawn anew in the plane's.
-constexpr double kMaxTilt_rad = 2 * kRadPerDeg;
+/// An outline is traced again when so many cells came or went, as many as the smallest hole has (0.01 m2).
+constexpr int kCellsOfNote = 16;
+/// A plane whose points moved less keeps its outline and its intersections.
+constexpr double kMoveOfNote_m = 0.001;
+/// Cells with this much evidence are not doubted any more.
+constexpr int kBeyondDoubt = 12;
+/// Said of a shape of which all has to be traced.
+constexpr int kAllCells = 1 << 20;
+/// Hits of a look through a cell: 2^1.
+constexpr int kDoubtStrength = 1;
 
-Moments scaled(const Moments& moments, double factor) {
-    return {factor * moments.count, factor * moments.sum, factor * moments.scatter};
-}
-
-/// The outline, or the rectangle of the box for a region without one.
-Outline outline_or_box(const PlanarRegion& region) {
-    if (!region.outline.empty()) return region.outline;
-    const double x = region.box.half_extents.x(), y = region.box.half_extents.y();
-    return {{Ring{{-x, -y}, {x, -y}, {x, y}, {-x, y}}}};
+/// Root mean square distance of a set of points to any plane.
+double rms_to(const Plane& plane, const Moments& moments) {
+    const double spread = plane.normal.dot(moments.covariance() * plane.normal);
+    return std::sqrt(std::max(0.0, spread) + std::pow(plane.signed_distance(moments.mean()), 2));
 }
 
 /// An outline's x, y in frame a, seen along frame b's z in b's x, y.
@@ -39,27 +42,15 @@ Outline transformed(const Pose& b_from_a, Outline outline) {
     return outline;
 }
 
-/// Root mean square distance of a set of points to any plane.
-double rms_to(const Plane& plane, const Moments& moments) {
-    const double spread = plane.normal.dot(moments.covariance() * plane.normal);
-    return std::sqrt(std::max(0.0, spread) + std::pow(plane.signed_distance(moments.mean()), 2));
-}
-
-std::vector<int> united(const std::vector<int>& a, const std::vector<int>& b) {
-    std::vector<int> result;
-    std::set_union(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(result));
-    return result;
-}
-
-template <typename T>
-std::size_t heap_bytes(const std::vector<T>& v) {
-    return v.capacity() * sizeof(T);
-}
-
-std::size_t heap_bytes(const Outline& outline) {
-    std::size_t bytes = heap_bytes(outline.rings);
-    for (const Ring& ring : outline.rings) bytes += heap_bytes(ring);
-    return bytes;
+/// The planes of a keyframe's regions, camera frame.
+std::vector<Plane> planes_of(const StoredKeyframe& keyframe) {
+    std::vector<Plane> planes;
+    for (const StoredRegion& region : keyframe.regions) {
+        const Eigen::Quaterniond q = Eigen::Quaterniond(region.camera_from_box.cast<double>()).normalized();
+        const Eigen::Vector3d normal = q * Eigen::Vector3d::UnitZ();
+        planes.push_back({normal, -normal.dot(region.center.cast<double>())});
+    }
+    return planes;
 }
 
 }  // namespace
@@ -79,7 +70,8 @@ void MapOptions::validate() const {
     in("outline_cell_m", outline_cell_m, 0.005, 1, "0.005 to 1");
     in("outline_tolerance_m", outline_tolerance_m, 0, 1, "0 to 1");
     in("outline_min_ring_m2", outline_min_ring_m2, 0, 100, "0 to 100");
-    in("outline_min_views", outline_min_views, 1, 255, "1 to 255");
+    in("outline_min_hits", outline_min_hits, 1, 15, "1 to 15");
+    in("see_through_m", see_through_m, 0.01, 100, "0.01 to 100");
     in("adjacency_gap_m", adjacency_gap_m, 0, 10, "0 to 10");
     in("adjacency_angle_deg", adjacency_angle_deg, 1, 90, "1 to 90");
     in("adjacency_length_m", adjacency_length_m, 0, 100, "0 to 100");
@@ -88,10 +80,15 @@ void MapOptions::validate() const {
     in("moved_m", moved_m, 0, 10, "0 to 10");
     in("moved_deg", moved_deg, 0, 180, "0 to 180");
     in("max_extent_m", max_extent_m, 1, 1000, "1 to 1000");
+    in("fold_after", fold_after, 0, 1e9, "0 to 1e9");
+    in("threads", threads, 1, 64, "1 to 64");
     errors.throw_if_any();
 }
 
-PlaneMapper::PlaneMapper(MapOptions options) : options_(options) {
+PlaneMapper::PlaneMapper(MapOptions options)
+    : options_(options),
+      set_({options.merge_angle_deg * kRadPerDeg, options.merge_distance_m, options.merge_gap_m},
+           options.max_extent_m) {
     options_.validate();
 }
 
@@ -102,25 +99,35 @@ bool PlaneMapper::is_usable(const PlanarRegion& region) const {
     if (!(region.box.half_extents.norm() <= reach)) return false;
     if (!(region.box.frame_from_box.translation().norm() <= kMaxCoordinate_m)) return false;
     return std::all_of(region.outline.rings.begin(), region.outline.rings.end(), [&](const Ring& ring) {
-        return std::all_of(ring.begin(), ring.end(), [&](const auto& v) { return v.norm() <= reach; });
+        return ring.size() <= 32767 &&
+               std::all_of(ring.begin(), ring.end(), [&](const auto& v) { return v.norm() <= reach; });
     });
 }
 
+void PlaneMapper::start_from(const PlaneMap& map) {
+    for (const MapPlane& plane : map.planes) {
+        fixed_.emplace_back(plane, options_.outline_cell_m);
+        next_id_ = std::max(next_id_, plane.id + 1);
+    }
+    map_.utime = map.utime;
+    rebuild();
+    refresh();
+}
+
 void PlaneMapper::add(const Keyframe& keyframe) {
-    Stored& stored = keyframes_[keyframe.id];
-    const bool replaces_one_in_the_map = stored.world_from_camera.has_value();
-    stored.utime = keyframe.utime;
-    stored.regions.clear();
+    std::vector<PlanarRegion> regions;
     for (const PlanarRegion& region : keyframe.regions) {
         if (is_usable(region)) {
-            stored.regions.push_back(region);
+            regions.push_back(region);
         } else {
             ++rejected_;
         }
     }
-    std::stable_sort(stored.regions.begin(), stored.regions.end(),
+    std::stable_sort(regions.begin(), regions.end(),
                      [](auto& a, auto& b) { return a.moments.count > b.moments.count; });
-    stored.planes.clear();
+    StoredKeyframe& kept = keyframes_[keyframe.id];
+    const bool replaces_one_in_the_map = kept.world_from_camera.has_value();
+    kept = stored(keyframe.utime, regions);
     if (replaces_one_in_the_map) {
         rebuild();
     } else {
@@ -139,10 +146,10 @@ void PlaneMapper::update(const KeyframeTrajectory& trajectory) {
     for (const KeyframePose& named : trajectory.keyframes) {
         if (!is_valid(named.world_from_camera)) continue;
         poses_[named.id] = named.world_from_camera;
-        const auto stored = keyframes_.find(named.id);
-        if (stored == keyframes_.end() || !stored->second.world_from_camera) continue;
+        const auto kept = keyframes_.find(named.id);
+        if (kept == keyframes_.end() || !kept->second.world_from_camera) continue;
         const Pose change =
-            stored->second.world_from_camera->inverse(Eigen::Isometry) * named.world_from_camera;
+            kept->second.world_from_camera->inverse(Eigen::Isometry) * named.world_from_camera;
         moved = moved || change.translation().norm() > options_.moved_m ||
                 rotation_angle(change) > options_.moved_deg * kRadPerDeg;
     }
@@ -151,10 +158,16 @@ void PlaneMapper::update(const KeyframeTrajectory& trajectory) {
         rebuild();
     } else {
         for (const KeyframePose& named : trajectory.keyframes) {
-            const auto stored = keyframes_.find(named.id);
-            if (stored != keyframes_.end() && !stored->second.world_from_camera) place(named.id);
+            const auto kept = keyframes_.find(named.id);
+            if (kept != keyframes_.end() && !kept->second.world_from_camera) place(named.id);
         }
     }
+    refresh();
+}
+
+void PlaneMapper::settle() {
+    if (settled_) return;
+    rebuild();
     refresh();
 }
 
@@ -164,165 +177,118 @@ std::size_t PlaneMapper::waiting() const {
                       [](const auto& entry) { return !entry.second.world_from_camera; }));
 }
 
-/// Puts a keyframe into the map if its pose is known; one that comes late enters by a rebuild, so that the
-/// order stays that of the ids.
+/// Puts a keyframe into the map if its pose is known.
 void PlaneMapper::place(int keyframe_id) {
     if (!poses_.contains(keyframe_id)) return;
-    if (in_order(keyframe_id)) {
-        integrate(keyframe_id);
-    } else {
-        rebuild();
-    }
-}
-
-bool PlaneMapper::in_order(int keyframe_id) const {
-    return std::none_of(keyframes_.upper_bound(keyframe_id), keyframes_.end(),
-                        [](const auto& entry) { return entry.second.world_from_camera.has_value(); });
-}
-
-void PlaneMapper::integrate(int keyframe_id) {
-    Stored& stored = keyframes_.at(keyframe_id);
-    const Pose& world_from_camera = poses_.at(keyframe_id);
-    stored.world_from_camera = world_from_camera;
-    stored.planes.clear();
-    for (const PlanarRegion& region : stored.regions) {
-        auto surface = make_surface(region, world_from_camera, keyframe_id);
-        stored.planes.push_back(surface ? insert(std::move(*surface)) : -1);
-    }
-    map_.utime = std::max(map_.utime, stored.utime);
+    integrate(keyframe_id);
+    fold();
 }
 
 /// Inverse variance of a view about the plane, relative to a noise-free sensor.
-double PlaneMapper::weight(const PlanarRegion& region_camera) const {
-    const double sigma = options_.noise.sigma(region_camera.moments.mean().z());
+double PlaneMapper::weight(const StoredRegion& region) const {
+    const double sigma = options_.noise.sigma(mean_depth(region));
     const double pose_variance = options_.pose_sigma_m * options_.pose_sigma_m;
     return pose_variance / (pose_variance + sigma * sigma);
 }
 
-std::optional<PlaneMapper::Surface> PlaneMapper::make_surface(const PlanarRegion& region_camera,
-                                                              const Pose& world_from_camera,
-                                                              int keyframe_id) const {
-    const Pose world_from_box = world_from_camera * region_camera.box.frame_from_box;
-    if (!(world_from_box.translation().norm() <= kMaxCoordinate_m)) return std::nullopt;
-    Surface surface;
-    surface.moments = world_from_camera * region_camera.moments;
-    surface.weighted = scaled(surface.moments, weight(region_camera));
-    surface.facing = surface.weighted.count * (world_from_camera.linear() * region_camera.plane.normal);
-    surface.keyframes = {keyframe_id};
-    surface.plane = fit_plane(surface.weighted).plane;
-    surface.box.half_extents.z() = region_camera.box.half_extents.z();
-
-    for (const Ring& ring : outline_or_box(region_camera).rings) {
-        for (const Eigen::Vector2d& v : ring)
-            surface.hull.push_back(world_from_box * Eigen::Vector3d(v.x(), v.y(), 0));
-    }
-    surface.patches = {{&region_camera, world_from_camera}};
-    refit(surface);
-    return surface;
+/// What a view counts for in the shape: 2^strength.
+int PlaneMapper::strength(const StoredRegion& region) const {
+    const double w = weight(region);
+    return w > 0.5 ? 2 : w > 0.2 ? 1 : 0;
 }
 
-/// Plane, hull and box after the moments or the hull's points changed.
-void PlaneMapper::refit(Surface& surface) const {
-    const PlaneFit fit = fit_plane(surface.weighted);
-    if (fit.valid) surface.plane = fit.plane;
-    if (surface.plane.normal.dot(surface.facing) < 0) surface.plane = surface.plane.flipped();
-
-    Pose world_from_plane = Pose::Identity();
-    world_from_plane.linear() = plane_axes(surface.plane.normal, fit.axes.col(2));
-    world_from_plane.translation() = surface.plane.project(surface.hull.front());
-    const Pose plane_from_world = world_from_plane.inverse(Eigen::Isometry);
-    std::vector<Eigen::Vector2d> flat;
-    for (const Eigen::Vector3d& p : surface.hull) flat.emplace_back((plane_from_world * p).head<2>());
-    if (Ring hull = convex_hull(flat); !hull.empty()) flat = std::move(hull);
-    surface.hull.clear();
-    for (const Eigen::Vector2d& v : flat)
-        surface.hull.push_back(world_from_plane * Eigen::Vector3d(v.x(), v.y(), 0));
-
-    const double half_z = surface.box.half_extents.z();
-    surface.box = bound(world_from_plane.linear(), surface.hull);
-    surface.box.half_extents.z() = half_z;
-    surface.changed = true;
-}
-
-/// Merges `from` into `into`: moments add up, the box holds both (paper section 2.3).
-void PlaneMapper::absorb(Surface& into, Surface&& from) const {
-    into.moments += from.moments;
-    into.weighted += from.weighted;
-    into.facing += from.facing;
-    into.keyframes = united(into.keyframes, from.keyframes);
-    into.hull.insert(into.hull.end(), from.hull.begin(), from.hull.end());
-    into.patches.insert(into.patches.end(), from.patches.begin(), from.patches.end());
-    if (from.grid.cell_count() > into.grid.cell_count()) std::swap(into.grid, from.grid);
-    into.grid.add(from.grid);
-    const double step = std::abs(into.plane.signed_distance(from.box.frame_from_box.translation()));
-    into.box.half_extents.z() = std::max(into.box.half_extents.z(), step + from.box.half_extents.z());
-    refit(into);
-}
-
-/// Brings the raster up to date: in the plane's frame, with all patches drawn.
-void PlaneMapper::draw(Surface& surface) const {
-    const bool tilted =
-        angle_between(surface.grid.world_from_grid().linear().col(2), surface.plane.normal) > kMaxTilt_rad;
-    if (surface.grid.empty() || tilted) {
-        EvidenceGrid level(surface.box.frame_from_box, options_.outline_cell_m);
-        level.add(surface.grid);
-        surface.grid = std::move(level);
-    }
-    const Pose grid_from_world = surface.grid.world_from_grid().inverse(Eigen::Isometry);
-    for (const Patch& patch : surface.patches) {
-        const PlanarRegion& region = *patch.region_camera;
-        surface.grid.add(transformed(grid_from_world * patch.world_from_camera * region.box.frame_from_box,
-                                     outline_or_box(region)));
-    }
-    surface.patches = {};
-}
-
-/// The surface that fits another one best among those that satisfy the rules.
-std::optional<std::size_t> PlaneMapper::best_partner(std::size_t index) const {
-    const MergeRules rules{options_.merge_angle_deg * kRadPerDeg, options_.merge_distance_m,
-                           options_.merge_gap_m};
-    const Surface& a = surfaces_[index];
-    std::optional<std::size_t> best;
-    double best_score = 0;
-    for (std::size_t i = 0; i < surfaces_.size(); ++i) {
-        if (i == index) continue;
-        const Surface& b = surfaces_[i];
-        const auto relation = same_plane(a.plane, a.box, b.plane, b.box, rules);
-        if (!relation) continue;
-        const double length =
-            (a.box.frame_from_box.translation() - b.box.frame_from_box.translation()).norm();
-        if (length + a.box.half_extents.norm() + b.box.half_extents.norm() > options_.max_extent_m) continue;
-        const double score = relation->angle_rad / std::max(rules.angle_rad, 1e-9) +
-                             relation->distance_m / std::max(rules.distance_m, 1e-9) +
-                             relation->gap_m / std::max(rules.gap_m, 1e-9);
-        if (!best || score < best_score) {
-            best = i;
-            best_score = score;
+void PlaneMapper::integrate(int keyframe_id) {
+    StoredKeyframe& keyframe = keyframes_.at(keyframe_id);
+    const Pose& world_from_camera = poses_.at(keyframe_id);
+    keyframe.world_from_camera = world_from_camera;
+    settled_ = false;
+    std::vector<std::size_t> grown;
+    for (StoredRegion& region : keyframe.regions) {
+        region.plane = -1;
+        const PlacedRegion placed(world_from_camera, region);
+        if (!(placed.box.frame_from_box.translation().norm() <= kMaxCoordinate_m)) continue;
+        std::size_t at = set_.partner_of(placed);
+        if (at == SurfaceSet::none()) {
+            outline_in(Pose::Identity(), region, keyframe, polygon_);
+            at = set_.push_back(Surface(placed, polygon_, weight(region)));
+            Surface& fresh = set_.surfaces()[at];
+            fresh.id = next_id_++;
+            fresh.grid = EvidenceGrid(fresh.box.frame_from_box, options_.outline_cell_m);
+        } else {
+            Surface& surface = set_.surfaces()[at];
+            outline_in(surface.world_from_extent.inverse(Eigen::Isometry) * placed.box.frame_from_box, region,
+                       keyframe, polygon_);
+            surface.add(placed, polygon_, weight(region));
+            set_.update(at);
         }
+        Surface& surface = set_.surfaces()[at];
+        outline_in(surface.grid.world_from_grid().inverse(Eigen::Isometry) * placed.box.frame_from_box,
+                   region, keyframe, polygon_);
+        surface.unshown += surface.grid.add(polygon_, strength(region));
+        surface.keyframes += surface.last_keyframe != keyframe_id;
+        surface.last_keyframe = keyframe_id;
+        region.plane = surface.id;
+        grown.push_back(at);
     }
-    return best;
+    std::sort(grown.begin(), grown.end());
+    grown.erase(std::unique(grown.begin(), grown.end()), grown.end());
+    for (const std::size_t i : grown) {
+        set_.surfaces()[i].refit();
+        set_.update(i);
+    }
+    merge(grown);
+    const std::vector<Plane> planes = planes_of(keyframe);
+    for (Surface& surface : set_.surfaces()) look_through(surface, keyframe, planes);
+    map_.utime = std::max(map_.utime, keyframe.utime);
 }
 
-/// Adds a surface and merges until no pair satisfies the rules; returns the id of the plane it is in now.
-/// Only pairs with the surface that grew need another look: all others were apart before.
-int PlaneMapper::insert(Surface surface) {
-    surface.id = next_id_;
-    surfaces_.push_back(std::move(surface));
-    std::size_t grown = surfaces_.size() - 1;
-    bool is_new = true;
-    while (const auto partner = best_partner(grown)) {
-        std::size_t into = std::min(grown, *partner), from = std::max(grown, *partner);
-        const int kept = std::min(surfaces_[into].id, surfaces_[from].id);
-        const int gone = std::max(surfaces_[into].id, surfaces_[from].id);
-        if (!is_new) merged_into_[gone] = kept;
-        is_new = false;
-        absorb(surfaces_[into], std::move(surfaces_[from]));
-        surfaces_[into].id = kept;
-        surfaces_.erase(surfaces_.begin() + static_cast<std::ptrdiff_t>(from));
-        grown = into;
+/// Counts against a surface's cells that a keyframe saw past them.
+void PlaneMapper::look_through(Surface& surface, const StoredKeyframe& keyframe,
+                               const std::vector<Plane>& planes) const {
+    const Pose camera_from_world = keyframe.world_from_camera->inverse(Eigen::Isometry);
+    const Eigen::Vector3d center = camera_from_world * (0.5 * (surface.low + surface.high));
+    const double radius = 0.5 * (surface.high - surface.low).norm();
+    // Outside the view: behind the camera, or beside its pyramid.
+    if (center.z() < -radius) return;
+    const auto beside = [&](double low, double high, double across) {
+        return low * center.z() - across > radius * std::hypot(1, low) ||
+               across - high * center.z() > radius * std::hypot(1, high);
+    };
+    const Eigen::Vector2d low = keyframe.sight.low(), high = keyframe.sight.high();
+    if (beside(low.x(), high.x(), center.x()) || beside(low.y(), high.y(), center.y())) return;
+
+    const Pose camera_from_grid = camera_from_world * surface.grid.world_from_grid();
+    const Eigen::Vector3d origin = camera_from_grid.translation(), x = camera_from_grid.linear().col(0),
+                          y = camera_from_grid.linear().col(1), normal = camera_from_grid.linear().col(2);
+    const auto seen_through = [&](const Eigen::Vector2d& p_grid) {
+        const Eigen::Vector3d p = origin + p_grid.x() * x + p_grid.y() * y;
+        const std::uint8_t region = keyframe.sight.region_at(p);
+        if (region == Sight::kNone) return false;
+        if (std::abs(normal.dot(p)) < 0.2 * p.norm()) return false;  // grazing: a pixel is a long strip
+        const Plane& beyond = planes[region];
+        // Depth of that region along the ray through the point.
+        const double depth = -beyond.d / beyond.normal.dot(p) * p.z();
+        const double margin = std::max(options_.see_through_m, 3 * options_.noise.sigma(depth));
+        return depth > p.z() + margin;
+    };
+    const int lost = surface.grid.doubt(kBeyondDoubt, kDoubtStrength, seen_through);
+    surface.unshown += lost;
+    surface.changed = surface.changed || lost > 0;
+}
+
+/// Merges surfaces that have come to satisfy the rules.
+void PlaneMapper::merge(const std::vector<std::size_t>& grown) {
+    std::vector<int> ids;
+    for (const Surface& surface : set_.surfaces()) ids.push_back(surface.id);
+    const std::vector<std::size_t> now = set_.merge(grown);
+    bool any = false;
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+        const int id = set_.surfaces()[now[i]].id;
+        if (id == ids[i]) continue;
+        merged_into_[ids[i]] = id;
+        any = true;
     }
-    if (is_new) ++next_id_;
-    return surfaces_[grown].id;
+    if (any) count_keyframes();
 }
 
 int PlaneMapper::resolved(int plane_id) const {
@@ -333,31 +299,199 @@ int PlaneMapper::resolved(int plane_id) const {
     return plane_id;
 }
 
+/// How many keyframes saw each surface, counted anew.
+void PlaneMapper::count_keyframes() {
+    std::map<int, Surface*> surfaces;
+    for (Surface& surface : set_.surfaces()) {
+        surfaces[surface.id] = &surface;
+        surface.keyframes = 0;
+        surface.last_keyframe = -1;
+    }
+    for (const Surface& fixed : fixed_) {
+        const auto at = surfaces.find(resolved(fixed.id));
+        if (at != surfaces.end()) at->second->keyframes += fixed.keyframes;
+    }
+    for (auto& [id, keyframe] : keyframes_) {
+        for (StoredRegion& region : keyframe.regions) {
+            region.plane = resolved(region.plane);
+            const auto at = surfaces.find(region.plane);
+            if (at == surfaces.end()) continue;
+            at->second->keyframes += at->second->last_keyframe != id;
+            at->second->last_keyframe = id;
+        }
+    }
+}
+
+/// Drops keyframes that are taken not to move any more, and keeps what they saw in fixed planes.
+void PlaneMapper::fold() {
+    if (options_.fold_after == 0) return;
+    while (keyframes_.size() > static_cast<std::size_t>(options_.fold_after)) {
+        const auto& [id, keyframe] = *keyframes_.begin();
+        if (!keyframe.world_from_camera) return;
+        for (const StoredRegion& region : keyframe.regions) {
+            if (region.plane < 0) continue;
+            const int plane_id = resolved(region.plane);
+            const PlacedRegion placed(*keyframe.world_from_camera, region);
+            auto at = std::find_if(fixed_.begin(), fixed_.end(),
+                                   [&](const Surface& s) { return resolved(s.id) == plane_id; });
+            if (at == fixed_.end()) {
+                outline_in(Pose::Identity(), region, keyframe, polygon_);
+                at = fixed_.insert(fixed_.end(), Surface(placed, polygon_, weight(region)));
+                at->id = plane_id;
+                at->grid = EvidenceGrid(at->box.frame_from_box, options_.outline_cell_m);
+            } else {
+                outline_in(at->world_from_extent.inverse(Eigen::Isometry) * placed.box.frame_from_box, region,
+                           keyframe, polygon_);
+                at->add(placed, polygon_, weight(region));
+            }
+            outline_in(at->grid.world_from_grid().inverse(Eigen::Isometry) * placed.box.frame_from_box,
+                       region, keyframe, polygon_);
+            at->grid.add(polygon_, strength(region));
+            at->keyframes += at->last_keyframe != id;
+            at->last_keyframe = id;
+        }
+        poses_.erase(id);
+        keyframes_.erase(keyframes_.begin());
+        ++folded_;
+    }
+}
+
+/// Gives the fixed planes their ids; those that have the same one become one.
+void PlaneMapper::unite_fixed(const std::vector<int>& ids) {
+    std::vector<Surface> united;
+    for (std::size_t i = 0; i < fixed_.size(); ++i) {
+        fixed_[i].id = ids[i];
+        const auto same =
+            std::find_if(united.begin(), united.end(), [&](const Surface& s) { return s.id == ids[i]; });
+        if (same == united.end()) {
+            united.push_back(std::move(fixed_[i]));
+        } else {
+            same->absorb(fixed_[i]);
+        }
+    }
+    fixed_ = std::move(united);
+}
+
 void PlaneMapper::rebuild() {
     ++rebuilds_;
+    // All regions, the weightiest first.
+    struct Entry {
+        double weight;
+        int keyframe;
+        std::size_t region;
+    };
+    std::vector<Entry> entries;
     std::map<int, std::vector<int>> planes_before;
-    for (auto& [id, stored] : keyframes_) {
-        for (int& plane : stored.planes) plane = resolved(plane);
-        planes_before[id] = stored.planes;
+    for (auto& [id, keyframe] : keyframes_) {
+        const auto pose = poses_.find(id);
+        if (pose == poses_.end()) continue;
+        keyframe.world_from_camera = pose->second;
+        map_.utime = std::max(map_.utime, keyframe.utime);
+        std::vector<int>& before = planes_before[id];
+        for (std::size_t i = 0; i < keyframe.regions.size(); ++i) {
+            StoredRegion& region = keyframe.regions[i];
+            before.push_back(resolved(region.plane));
+            region.plane = -1;
+            entries.push_back({weight(region) * static_cast<double>(region.count), id, i});
+        }
     }
+    std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+        return std::tuple(-a.weight, a.keyframe, a.region) < std::tuple(-b.weight, b.keyframe, b.region);
+    });
+
     const int first_new_id = next_id_;
-    surfaces_.clear();
+    std::vector<int> fixed_ids;
+    for (const Surface& fixed : fixed_) fixed_ids.push_back(resolved(fixed.id));
+    unite_fixed(fixed_ids);
+    SurfaceSet fresh({options_.merge_angle_deg * kRadPerDeg, options_.merge_distance_m, options_.merge_gap_m},
+                     options_.max_extent_m);
+    for (const Surface& fixed : fixed_) {
+        Surface& surface = fresh.surfaces()[fresh.push_back(fixed)];
+        surface.changed = true;
+        surface.unshown = kAllCells;
+    }
+    std::vector<std::pair<const Entry*, std::size_t>> joined;
+    joined.reserve(entries.size());
+    for (const Entry& entry : entries) {
+        const StoredKeyframe& keyframe = keyframes_.at(entry.keyframe);
+        const StoredRegion& region = keyframe.regions[entry.region];
+        const PlacedRegion placed(*keyframe.world_from_camera, region);
+        if (!(placed.box.frame_from_box.translation().norm() <= kMaxCoordinate_m)) continue;
+        std::size_t at = fresh.partner_of(placed);
+        if (at == SurfaceSet::none()) {
+            outline_in(Pose::Identity(), region, keyframe, polygon_);
+            at = fresh.push_back(Surface(placed, polygon_, weight(region)));
+            fresh.surfaces()[at].id = next_id_++;
+        } else {
+            Surface& surface = fresh.surfaces()[at];
+            outline_in(surface.world_from_extent.inverse(Eigen::Isometry) * placed.box.frame_from_box, region,
+                       keyframe, polygon_);
+            surface.add(placed, polygon_, weight(region));
+            fresh.update(at);
+        }
+        joined.emplace_back(&entry, at);
+    }
+    std::vector<std::size_t> all;
+    for (std::size_t i = 0; i < fresh.surfaces().size(); ++i) {
+        fresh.surfaces()[i].refit();
+        fresh.update(i);
+        all.push_back(i);
+    }
+    const std::vector<std::size_t> now = fresh.merge(all);
+    set_ = std::move(fresh);
     merged_into_.clear();
-    for (const auto& [id, stored] : keyframes_) {
-        if (poses_.contains(id)) integrate(id);
+    fixed_ids.clear();
+    for (std::size_t i = 0; i < fixed_.size(); ++i) fixed_ids.push_back(set_.surfaces()[now[i]].id);
+    unite_fixed(fixed_ids);
+
+    std::vector<std::vector<std::pair<int, std::size_t>>> regions(set_.surfaces().size());
+    for (const auto& [entry, at] : joined) {
+        keyframes_.at(entry->keyframe).regions[entry->region].plane = set_.surfaces()[now[at]].id;
+        regions[now[at]].emplace_back(entry->keyframe, entry->region);
+    }
+    // Shapes are independent of each other.
+    std::atomic<std::size_t> next{0};
+    const auto work = [&] {
+        for (std::size_t i = next++; i < regions.size(); i = next++) draw(set_.surfaces()[i], regions[i]);
+    };
+    {
+        std::vector<std::jthread> others;
+        for (int i = 1; i < options_.threads; ++i) others.emplace_back(work);
+        work();
     }
     keep_ids(planes_before, first_new_id);
+    count_keyframes();
+    settled_ = true;
+}
+
+/// A rebuilt surface's shape: its regions, and then what all keyframes say against it.
+void PlaneMapper::draw(Surface& surface, const std::vector<std::pair<int, std::size_t>>& regions) {
+    if (surface.grid.empty())
+        surface.grid = EvidenceGrid(surface.box.frame_from_box, options_.outline_cell_m);
+    const Pose grid_from_world = surface.grid.world_from_grid().inverse(Eigen::Isometry);
+    FlatPolygon polygon;
+    for (const auto& [id, i] : regions) {
+        const StoredKeyframe& keyframe = keyframes_.at(id);
+        const StoredRegion& region = keyframe.regions[i];
+        const Pose world_from_box = PlacedRegion(*keyframe.world_from_camera, region).box.frame_from_box;
+        outline_in(grid_from_world * world_from_box, region, keyframe, polygon);
+        surface.grid.add(polygon, strength(region));
+    }
+    for (const auto& [id, keyframe] : keyframes_) {
+        if (keyframe.world_from_camera) look_through(surface, keyframe, planes_of(keyframe));
+    }
+    surface.unshown = kAllCells;
 }
 
 /// Gives each rebuilt plane the id of the earlier plane that most of its inliers were in; each id once, the
 /// strongest claim first. Planes without a claim get new ids.
 void PlaneMapper::keep_ids(const std::map<int, std::vector<int>>& planes_before, int first_new_id) {
     std::map<std::pair<int, int>, double> votes;  // (id before, id now): inliers
-    for (const auto& [id, stored] : keyframes_) {
-        const std::vector<int>& before = planes_before.at(id);
-        for (std::size_t i = 0; i < std::min(before.size(), stored.planes.size()); ++i) {
-            if (before[i] < 0 || stored.planes[i] < 0) continue;
-            votes[{before[i], resolved(stored.planes[i])}] += stored.regions[i].moments.count;
+    for (const auto& [id, before] : planes_before) {
+        const std::vector<StoredRegion>& regions = keyframes_.at(id).regions;
+        for (std::size_t i = 0; i < regions.size(); ++i) {
+            if (before[i] < 0 || regions[i].plane < 0) continue;
+            votes[{before[i], regions[i].plane}] += static_cast<double>(regions[i].count);
         }
     }
     std::vector<std::pair<double, std::pair<int, int>>> claims;
@@ -365,34 +499,79 @@ void PlaneMapper::keep_ids(const std::map<int, std::vector<int>>& planes_before,
     std::sort(claims.begin(), claims.end());
     std::map<int, int> name;  // id now: id before
     std::set<int> taken;
+    for (const Surface& fixed : fixed_) {
+        for (const Surface& surface : set_.surfaces()) {
+            if (surface.id != fixed.id) continue;
+            name[surface.id] = fixed.id;
+            taken.insert(fixed.id);
+        }
+    }
     for (const auto& [inliers, pair] : claims) {
         if (name.contains(pair.second) || taken.contains(pair.first)) continue;
         name[pair.second] = pair.first;
         taken.insert(pair.first);
     }
     next_id_ = first_new_id;
-    for (Surface& surface : surfaces_) {
+    for (Surface& surface : set_.surfaces()) {
         const auto known = name.try_emplace(surface.id, next_id_);
         if (known.second) ++next_id_;
         surface.id = known.first->second;
     }
-    for (auto& [id, stored] : keyframes_) {
-        for (int& plane : stored.planes) plane = plane < 0 ? -1 : name.at(resolved(plane));
+    for (const auto& [id, before] : planes_before) {
+        for (StoredRegion& region : keyframes_.at(id).regions)
+            region.plane = region.plane < 0 ? -1 : name.at(region.plane);
     }
-    merged_into_.clear();
 }
 
-MapPlane PlaneMapper::derive(const Surface& surface) const {
+/// A surface as a plane of the map, nothing if it is too small or too seldom seen. Of a plane that hardly
+/// changed, the outline stays as it was; returns whether it or the plane changed to note.
+bool PlaneMapper::derive(Surface& surface, std::optional<MapPlane>& plane) const {
     PlanarRegion region;
     region.plane = surface.plane;
     region.moments = surface.moments;
-    region.box = surface.box;
     region.rms = rms_to(surface.plane, surface.moments);
+    if (plane && surface.unshown < kCellsOfNote) {
+        const Plane before = plane->plane();
+        const double turn = before.normal.cross(surface.plane.normal).norm();
+        const double shift = std::abs(surface.plane.signed_distance(plane->center.cast<double>()));
+        if (shift + turn * static_cast<double>(plane->half_extents.norm()) < kMoveOfNote_m) {
+            plane->move_to(surface.plane);
+            plane->keyframes = static_cast<std::int16_t>(std::min(surface.keyframes, 32767));
+            plane->inliers = static_cast<float>(surface.moments.count);
+            plane->rms = static_cast<float>(region.rms);
+            return false;
+        }
+    }
+    surface.unshown = 0;
+    plane.reset();
+    if (surface.keyframes < options_.min_keyframes) return true;
     const Outline outline_grid = surface.grid.outline(
-        {options_.outline_min_views, options_.outline_min_ring_m2, options_.outline_tolerance_m});
-    region.outline = transformed(
-        surface.box.frame_from_box.inverse(Eigen::Isometry) * surface.grid.world_from_grid(), outline_grid);
-    return {surface.id, region, surface.keyframes.size()};
+        {options_.outline_min_hits, options_.outline_min_ring_m2, options_.outline_tolerance_m});
+    if (outline_grid.empty()) return true;
+    // The box: along the principal axes, around the outline.
+    Pose world_from_axes = Pose::Identity();
+    world_from_axes.linear() = surface.box.frame_from_box.linear();
+    world_from_axes.translation() = surface.box.frame_from_box.translation();
+    Outline outline =
+        transformed(world_from_axes.inverse(Eigen::Isometry) * surface.grid.world_from_grid(), outline_grid);
+    Eigen::Vector2d low = Eigen::Vector2d::Constant(1e300), high = -low;
+    for (const Ring& ring : outline.rings) {
+        for (const Eigen::Vector2d& v : ring) {
+            low = low.cwiseMin(v);
+            high = high.cwiseMax(v);
+        }
+    }
+    const Eigen::Vector2d middle = 0.5 * (low + high), half = 0.5 * (high - low);
+    for (Ring& ring : outline.rings) {
+        for (Eigen::Vector2d& v : ring) v -= middle;
+    }
+    region.box.frame_from_box = world_from_axes;
+    region.box.frame_from_box.translation() = world_from_axes * Eigen::Vector3d(middle.x(), middle.y(), 0);
+    region.box.half_extents << half, 0;
+    region.outline = std::move(outline);
+    MapPlane derived(surface.id, region, static_cast<std::size_t>(surface.keyframes));
+    if (derived.area > 0 && static_cast<double>(derived.area) >= options_.min_area_m2) plane = derived;
+    return true;
 }
 
 /// Brings map_ up to date: only planes that changed are derived anew, with the intersections they are in.
@@ -401,20 +580,19 @@ void PlaneMapper::refresh() {
     for (MapPlane& plane : map_.planes) before.emplace(plane.id, std::move(plane));
     std::vector<int> changed;
     std::vector<MapPlane> planes;
-    for (Surface& surface : surfaces_) {
-        const auto known = before.find(surface.id);
+    for (Surface& surface : set_.surfaces()) {
+        std::optional<MapPlane> plane;
+        if (const auto known = before.find(surface.id); known != before.end()) {
+            plane = std::move(known->second);
+            before.erase(known);
+        }
         if (surface.changed) {
             surface.changed = false;
-            changed.push_back(surface.id);
-            draw(surface);
-            if (static_cast<int>(surface.keyframes.size()) < options_.min_keyframes) continue;
-            MapPlane plane = derive(surface);
-            if (static_cast<double>(plane.area) >= options_.min_area_m2 && plane.area > 0)
-                planes.push_back(std::move(plane));
-        } else if (known != before.end()) {
-            planes.push_back(std::move(known->second));
+            if (derive(surface, plane)) changed.push_back(surface.id);
         }
+        if (plane) planes.push_back(std::move(*plane));
     }
+    for (const auto& [id, plane] : before) changed.push_back(id);  // merged into another one, or gone
     std::sort(planes.begin(), planes.end(), [](auto& a, auto& b) { return a.id < b.id; });
     planes.shrink_to_fit();
     map_.planes = std::move(planes);
@@ -423,23 +601,31 @@ void PlaneMapper::refresh() {
 }
 
 void PlaneMapper::refresh_intersections(const std::vector<int>& changed_ids) {
+    if (changed_ids.empty()) return;
     const AdjacencyRules rules{options_.adjacency_gap_m, options_.adjacency_angle_deg * kRadPerDeg,
                                options_.adjacency_length_m};
-    std::map<int, const MapPlane*> planes;
-    for (const MapPlane& plane : map_.planes) planes[plane.id] = &plane;
     const auto is_changed = [&](int id) {
         return std::binary_search(changed_ids.begin(), changed_ids.end(), id);
     };
-    const auto is_stale = [&](int id) { return is_changed(id) || !planes.contains(id); };
-    std::erase_if(map_.lines, [&](auto& line) { return is_stale(line.plane_a) || is_stale(line.plane_b); });
+    for (const int id : changed_ids) {
+        const MapPlane* plane = map_.find(id);
+        if (plane != nullptr) {
+            shapes_[id] = PlaneShape(*plane);
+        } else {
+            shapes_.erase(id);
+        }
+    }
+    std::erase_if(map_.lines,
+                  [&](auto& line) { return is_changed(line.plane_a) || is_changed(line.plane_b); });
     std::erase_if(map_.points, [&](auto& point) {
-        return std::any_of(point.planes.begin(), point.planes.end(), is_stale);
+        return std::any_of(point.planes.begin(), point.planes.end(), is_changed);
     });
-
-    for (const auto& [a, plane_a] : planes) {
-        for (const auto& [b, plane_b] : planes) {
-            if (b <= a || !(is_changed(a) || is_changed(b))) continue;
-            const auto lines = intersection_lines(*plane_a, *plane_b, rules);
+    for (const int a : changed_ids) {
+        const auto shape_a = shapes_.find(a);
+        if (shape_a == shapes_.end()) continue;
+        for (const auto& [b, shape_b] : shapes_) {
+            if (b == a || (b < a && is_changed(b))) continue;
+            const auto lines = intersection_lines(shape_a->second, shape_b, rules);
             map_.lines.insert(map_.lines.end(), lines.begin(), lines.end());
         }
     }
@@ -451,10 +637,11 @@ void PlaneMapper::refresh_intersections(const std::vector<int>& changed_ids) {
     for (const IntersectionLine& line : map_.lines) above[line.plane_a].insert(line.plane_b);
     for (const auto& [a, adjacent] : above) {
         for (const int b : adjacent) {
-            if (!above.contains(b)) continue;
-            for (const int c : above.at(b)) {
+            const auto beyond = above.find(b);
+            if (beyond == above.end()) continue;
+            for (const int c : beyond->second) {
                 if (!adjacent.contains(c) || !(is_changed(a) || is_changed(b) || is_changed(c))) continue;
-                const auto point = intersection_point(*planes[a], *planes[b], *planes[c], rules);
+                const auto point = intersection_point(shapes_.at(a), shapes_.at(b), shapes_.at(c), rules);
                 if (point) map_.points.push_back(*point);
             }
         }
@@ -464,26 +651,31 @@ void PlaneMapper::refresh_intersections(const std::vector<int>& changed_ids) {
     map_.points.shrink_to_fit();
 }
 
-std::size_t PlaneMapper::memory_bytes() const {
-    return planemap::memory_bytes(map_);
+Moments PlaneMapper::moments(int plane_id) const {
+    for (const Surface& surface : set_.surfaces())
+        if (surface.id == plane_id) return surface.moments;
+    return {};
 }
 
 std::map<int, std::vector<int>> PlaneMapper::sightings() const {
     std::map<int, std::vector<int>> result;
-    for (const Surface& surface : surfaces_) result[surface.id] = surface.keyframes;
+    for (const auto& [id, keyframe] : keyframes_) {
+        for (const StoredRegion& region : keyframe.regions) {
+            if (region.plane < 0) continue;
+            std::vector<int>& ids = result[resolved(region.plane)];
+            if (ids.empty() || ids.back() != id) ids.push_back(id);
+        }
+    }
     return result;
 }
 
 std::size_t PlaneMapper::working_bytes() const {
     std::size_t bytes = poses_.size() * sizeof(std::pair<int, Pose>);
-    for (const auto& [id, stored] : keyframes_) {
-        bytes += sizeof stored + heap_bytes(stored.regions) + heap_bytes(stored.planes);
-        for (const PlanarRegion& region : stored.regions) bytes += heap_bytes(region.outline);
-    }
-    for (const Surface& surface : surfaces_) {
-        bytes += sizeof surface + surface.grid.cell_count() + heap_bytes(surface.hull) +
-                 heap_bytes(surface.keyframes);
-    }
+    for (const auto& [id, keyframe] : keyframes_) bytes += planemap::memory_bytes(keyframe);
+    for (const auto* group : {&set_.surfaces(), &fixed_})
+        for (const Surface& surface : *group) bytes += sizeof surface + surface.grid.memory_bytes();
+    for (const auto& [id, shape] : shapes_)
+        bytes += sizeof shape + shape.outline.vertex_count() * sizeof(Eigen::Vector2d);
     return bytes;
 }
 

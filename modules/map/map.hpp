@@ -10,7 +10,8 @@
 #include "core/camera.hpp"
 #include "core/keyframe.hpp"
 #include "core/plane_map.hpp"
-#include "map/evidence_grid.hpp"
+#include "map/intersections.hpp"
+#include "map/surface.hpp"
 
 namespace planemap {
 
@@ -25,7 +26,8 @@ struct MapOptions {
     double outline_cell_m = 0.025;      ///< raster on which a plane's shape is collected
     double outline_tolerance_m = 0.03;  ///< simplification of the outline
     double outline_min_ring_m2 = 0.01;  ///< smaller parts and holes of an outline are left out
-    int outline_min_views = 1;          ///< keyframe regions that must have covered a cell
+    int outline_min_hits = 1;           ///< evidence a cell needs: 1 for a far view, up to 4 for a near one
+    double see_through_m = 0.1;         ///< a view past a cell by more (and 3 sigma) is evidence against it
 
     double adjacency_gap_m = 0.15;     ///< planes meet where both outlines come this near to the common line
     double adjacency_angle_deg = 15;   ///< flatter pairs get no intersection line
@@ -37,6 +39,9 @@ struct MapOptions {
     double moved_m = 0.002;     ///< keyframes that moved less than this,
     double moved_deg = 0.05;    ///< and turned less than this, do not cause a rebuild
     double max_extent_m = 200;  ///< a plane does not grow longer than this
+    int fold_after = 0;  ///< keyframes older than so many newer ones are taken not to move any more, and
+                         ///< their regions are folded into the planes; 0: never
+    int threads = 2;     ///< of a rebuild; they do not change the result
 
     /// Throws std::invalid_argument that names every bad field.
     void validate() const;
@@ -45,17 +50,22 @@ struct MapOptions {
 /// Builds the map of planes from keyframes and their poses (paper section 2.3).
 ///
 /// A keyframe's regions enter the map when both the keyframe and a pose for it are known, whichever comes
-/// first; regions are kept in the camera frame, so that the map can be rebuilt exactly when poses change. The
-/// map is always that of the known keyframes taken in ascending id, whatever the order of arrival. Within a
-/// keyframe, regions enter by falling number of inliers. After each one, planes that satisfy the merging
-/// rules are merged until no pair is left that does.
+/// first; regions are kept in the camera frame, so that the map can be rebuilt exactly when poses change.
+/// While keyframes arrive, each region joins the plane it fits best by the merging rules, and planes that
+/// have come to satisfy the rules are merged. A rebuild takes the regions of all keyframes in an order of
+/// their own, the weightiest first, so that the map after settle() or a correction does not depend on the
+/// order in which keyframes came, nor on what the poses were before.
 ///
 /// Merged moments are exact. The plane itself is the fit to them in which each view is weighted by
-/// pose_sigma^2 / (pose_sigma^2 + sigma(z)^2), z being its mean depth.
+/// pose_sigma^2 / (pose_sigma^2 + sigma(z)^2), z being its mean depth. Its shape counts, for each cell, views
+/// (a near one up to four times) and how often the cell was looked through.
 class PlaneMapper {
   public:
     /// Throws std::invalid_argument for bad options.
     explicit PlaneMapper(MapOptions options = {});
+
+    /// Starts from a finished map, in its world frame: its planes keep their ids and grow on. Call it first.
+    void start_from(const PlaneMap& map);
 
     /// Takes a keyframe; it waits if no trajectory has named its pose yet. Regions that are invalid
     /// (is_valid(PlanarRegion)), whose moments determine no plane, or that are larger than max_extent_m are
@@ -68,80 +78,64 @@ class PlaneMapper {
     /// rebuilt. Keyframes it does not name keep their pose; invalid poses are ignored.
     void update(const KeyframeTrajectory& trajectory);
 
+    /// Brings the map into the form that does not depend on the order of arrival; for the end of a run, or a
+    /// pause. Does nothing if nothing came since the last rebuild.
+    void settle();
+
     /// The map after the last call.
     const PlaneMap& map() const { return map_; }
-    /// Ids of the keyframes that saw each plane, ascending, by the plane's id.
-    std::map<int, std::vector<int>> sightings() const;
     /// Bytes of the map itself: all that map() holds, by capacity, without the keyframes kept for rebuilding
     /// and without the rasters of the outlines.
-    std::size_t memory_bytes() const;
+    std::size_t memory_bytes() const { return planemap::memory_bytes(map_); }
     /// Bytes of what is kept to go on mapping: keyframe regions and rasters, by capacity, roughly.
     std::size_t working_bytes() const;
 
+    /// Exact moments of a plane's points, world frame; zero for an unknown id, and of a plane of start_from()
+    /// those of points spread evenly over it.
+    Moments moments(int plane_id) const;
+    /// Ids of the keyframes that saw each plane, ascending, by the plane's id.
+    std::map<int, std::vector<int>> sightings() const;
     /// Keyframes that have no pose yet.
     std::size_t waiting() const;
     /// Regions left out so far.
     std::size_t rejected() const { return rejected_; }
+    /// Keyframes whose regions were folded into the planes (MapOptions::fold_after).
+    std::size_t folded() const { return folded_; }
     /// How often the whole map was rebuilt.
     std::size_t rebuilds() const { return rebuilds_; }
 
   private:
-    /// A keyframe as it is kept.
-    struct Stored {
-        std::int64_t utime = 0;
-        std::vector<PlanarRegion> regions;      ///< camera frame, by falling number of inliers
-        std::vector<int> planes;                ///< id each region went to; follow merged_into_ from there
-        std::optional<Pose> world_from_camera;  ///< the pose it is in the map with
-    };
-
-    /// A region's outline on its way into a plane's shape.
-    struct Patch {
-        const PlanarRegion* region_camera;  ///< in keyframes_
-        Pose world_from_camera;
-    };
-
-    /// A plane while it grows. World frame.
-    struct Surface {
-        int id = -1;
-        Plane plane;
-        Moments moments;                    ///< exact
-        Moments weighted;                   ///< each view by its weight; the plane is their fit
-        Eigen::Vector3d facing;             ///< weighted sum of the views' normals: which side was seen
-        Box box;                            ///< bounds the hull
-        std::vector<Eigen::Vector3d> hull;  ///< convex hull of all outlines
-        EvidenceGrid grid;                  ///< the shape, as of the last refresh()
-        std::vector<Patch> patches;         ///< to be drawn into the grid
-        std::vector<int> keyframes;         ///< ids, ascending
-        bool changed = true;                ///< since map_ was derived
-    };
-
     bool is_usable(const PlanarRegion& region) const;
-    double weight(const PlanarRegion& region_camera) const;
-    std::optional<Surface> make_surface(const PlanarRegion& region_camera, const Pose& world_from_camera,
-                                        int keyframe_id) const;
+    double weight(const StoredRegion& region) const;
+    int strength(const StoredRegion& region) const;
     void place(int keyframe_id);
     void integrate(int keyframe_id);
-    int insert(Surface surface);
-    std::optional<std::size_t> best_partner(std::size_t index) const;
-    void absorb(Surface& into, Surface&& from) const;
-    void refit(Surface& surface) const;
-    void draw(Surface& surface) const;
-    bool in_order(int keyframe_id) const;
+    void look_through(Surface& surface, const StoredKeyframe& keyframe,
+                      const std::vector<Plane>& planes) const;
+    void merge(const std::vector<std::size_t>& grown);
     int resolved(int plane_id) const;
+    void fold();
+    void unite_fixed(const std::vector<int>& ids);
     void rebuild();
+    void draw(Surface& surface, const std::vector<std::pair<int, std::size_t>>& regions);
     void keep_ids(const std::map<int, std::vector<int>>& planes_before, int first_new_id);
+    void count_keyframes();
     void refresh();
-    MapPlane derive(const Surface& surface) const;
+    bool derive(Surface& surface, std::optional<MapPlane>& plane) const;
     void refresh_intersections(const std::vector<int>& changed_ids);
 
     MapOptions options_;
-    std::map<int, Pose> poses_;        ///< world_from_camera of all keyframes named so far
-    std::map<int, Stored> keyframes_;  ///< by id
-    std::vector<Surface> surfaces_;
-    std::map<int, int> merged_into_;  ///< plane ids that went up in another one
+    std::map<int, Pose> poses_;                ///< world_from_camera of all keyframes named so far
+    std::map<int, StoredKeyframe> keyframes_;  ///< by id
+    std::vector<Surface> fixed_;               ///< planes that no keyframe can move any more
+    SurfaceSet set_;
+    std::map<int, int> merged_into_;    ///< plane ids that went up in another one
+    std::map<int, PlaneShape> shapes_;  ///< of map_'s planes
     int next_id_ = 0;
     PlaneMap map_;
-    std::size_t rejected_ = 0, rebuilds_ = 0;
+    FlatPolygon polygon_;  ///< scratch
+    std::size_t rejected_ = 0, folded_ = 0, rebuilds_ = 0;
+    bool settled_ = true;
 };
 
 }  // namespace planemap

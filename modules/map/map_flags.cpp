@@ -20,8 +20,10 @@ void add_flags(Flags& flags, MapOptions& options, const std::string& prefix) {
     flags.add("outline-tolerance-m", options.outline_tolerance_m, "simplification of the outline");
     flags.add("outline-min-ring-m2", options.outline_min_ring_m2,
               "smaller parts and holes of an outline are left out");
-    flags.add("outline-min-views", options.outline_min_views,
-              "keyframe regions that must have covered a cell");
+    flags.add("outline-min-hits", options.outline_min_hits,
+              "evidence a cell needs: 1 for a far view, up to 4 for a near one");
+    flags.add("see-through-m", options.see_through_m,
+              "a view past a cell by more than this (and 3 sigma) is evidence against it");
     flags.add("adjacency-gap-m", options.adjacency_gap_m,
               "planes meet where both outlines come this near to the common line");
     flags.add("adjacency-angle-deg", options.adjacency_angle_deg, "flatter pairs get no intersection line");
@@ -32,6 +34,10 @@ void add_flags(Flags& flags, MapOptions& options, const std::string& prefix) {
     flags.add("moved-m", options.moved_m, "keyframes that moved less than this");
     flags.add("moved-deg", options.moved_deg, "and turned less than this, do not cause a rebuild");
     flags.add("max-extent-m", options.max_extent_m, "a plane does not grow longer than this");
+    flags.add("fold-after", options.fold_after,
+              "keyframes older than so many newer ones are taken not to move any more: their regions are "
+              "folded into the planes; 0: never");
+    flags.add("threads", options.threads, "threads of a rebuild; they do not change the result");
 }
 
 }  // namespace planemap

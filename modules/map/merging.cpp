@@ -2,38 +2,53 @@
 #include "map/merging.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
-
-#include "core/outline.hpp"
 
 namespace planemap {
 
 namespace {
 
+/// A convex polygon of at most eight corners: a rectangle, or what another one leaves of it.
+struct Corners {
+    std::array<Eigen::Vector2d, 8> p;
+    std::size_t count = 0;
+
+    void push_back(const Eigen::Vector2d& corner) {
+        if (count < p.size()) p[count++] = corner;
+    }
+    double area() const {
+        double twice = 0;
+        for (std::size_t i = 0, j = count - 1; i < count; j = i++)
+            twice += p[j].x() * p[i].y() - p[j].y() * p[i].x();
+        return 0.5 * twice;
+    }
+};
+
 /// A box's middle face seen along a direction: columns of axes are the view's x, y and direction.
-Ring seen_along(const Eigen::Matrix3d& axes, const Eigen::Vector3d& origin, const Box& box) {
-    Ring ring;
+Corners seen_along(const Eigen::Matrix3d& axes, const Eigen::Vector3d& origin, const Box& box) {
+    Corners corners;
     for (const Eigen::Vector3d& corner : box.face())
-        ring.push_back((axes.transpose() * (corner - origin)).head<2>());
-    if (signed_area(ring) < 0) std::reverse(ring.begin(), ring.end());
-    return ring;
+        corners.push_back((axes.transpose() * (corner - origin)).head<2>());
+    if (corners.area() < 0) std::reverse(corners.p.begin(), corners.p.begin() + 4);
+    return corners;
 }
 
-/// Part of a convex ring inside another counter-clockwise convex ring (Sutherland-Hodgman).
-Ring clipped(Ring ring, const Ring& by) {
-    for (std::size_t i = 0, j = by.size() - 1; i < by.size() && !ring.empty(); j = i++) {
-        const Eigen::Vector2d inward(by[j].y() - by[i].y(), by[i].x() - by[j].x());
-        Ring kept;
-        for (std::size_t k = 0, l = ring.size() - 1; k < ring.size(); l = k++) {
-            const double before = inward.dot(ring[l] - by[j]), here = inward.dot(ring[k] - by[j]);
-            if ((before < 0) != (here < 0))
-                kept.push_back(ring[l] + before / (before - here) * (ring[k] - ring[l]));
-            if (here >= 0) kept.push_back(ring[k]);
+/// Part of a rectangle inside another one that is counter-clockwise (Sutherland-Hodgman).
+Corners clipped(Corners corners, const Corners& by) {
+    for (std::size_t i = 0, j = by.count - 1; i < by.count && corners.count > 0; j = i++) {
+        const Eigen::Vector2d inward(by.p[j].y() - by.p[i].y(), by.p[i].x() - by.p[j].x());
+        Corners kept;
+        for (std::size_t k = 0, l = corners.count - 1; k < corners.count; l = k++) {
+            const Eigen::Vector2d &from = corners.p[l], &to = corners.p[k];
+            const double before = inward.dot(from - by.p[j]), here = inward.dot(to - by.p[j]);
+            if ((before < 0) != (here < 0)) kept.push_back(from + before / (before - here) * (to - from));
+            if (here >= 0) kept.push_back(to);
         }
-        ring = std::move(kept);
+        corners = kept;
     }
-    return ring;
+    return corners;
 }
 
 struct NearestPoints {
@@ -41,14 +56,15 @@ struct NearestPoints {
     Eigen::Vector2d midpoint = Eigen::Vector2d::Zero();
 };
 
-/// Nearest points between the corners of one ring and the edges of the other, both ways; exact for convex
-/// rings that do not overlap.
-NearestPoints nearest_points(const Ring& a, const Ring& b) {
+/// Nearest points between the corners of one polygon and the edges of the other, both ways; exact for convex
+/// ones that do not overlap.
+NearestPoints nearest_points(const Corners& a, const Corners& b) {
     NearestPoints best;
     for (const auto& [corners, edges] : {std::pair(&a, &b), std::pair(&b, &a)}) {
-        for (const Eigen::Vector2d& p : *corners) {
-            for (std::size_t i = 0, j = edges->size() - 1; i < edges->size(); j = i++) {
-                const Eigen::Vector2d from = (*edges)[j], along = (*edges)[i] - from;
+        for (std::size_t k = 0; k < corners->count; ++k) {
+            const Eigen::Vector2d& p = corners->p[k];
+            for (std::size_t i = 0, j = edges->count - 1; i < edges->count; j = i++) {
+                const Eigen::Vector2d from = edges->p[j], along = edges->p[i] - from;
                 const double length2 = along.squaredNorm();
                 const double s = length2 > 0 ? std::clamp((p - from).dot(along) / length2, 0.0, 1.0) : 0.0;
                 const Eigen::Vector2d q = from + s * along;
@@ -72,14 +88,15 @@ struct Height {
     double operator()(const Eigen::Vector2d& p) const { return offset + slope.dot(p); }
 };
 
-/// Root mean square over a convex ring of the height between two planes; the square of a linear function is
-/// integrated exactly over the triangles of a fan.
-double rms_over(const Ring& ring, const Height& a, const Height& b) {
+/// Root mean square over a convex polygon of the height between two planes; the square of a linear function
+/// is integrated exactly over the triangles of a fan.
+double rms_over(const Corners& corners, const Height& a, const Height& b) {
     double integral = 0, total = 0;
     const auto f = [&](const Eigen::Vector2d& p) { return a(p) - b(p); };
-    for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
-        const double x = f(ring[0]), y = f(ring[i]), z = f(ring[i + 1]);
-        const double triangle = signed_area(Ring{ring[0], ring[i], ring[i + 1]});
+    for (std::size_t i = 1; i + 1 < corners.count; ++i) {
+        const Eigen::Vector2d &p = corners.p[0], &q = corners.p[i], &r = corners.p[i + 1];
+        const double x = f(p), y = f(q), z = f(r);
+        const double triangle = 0.5 * ((q.x() - p.x()) * (r.y() - p.y()) - (q.y() - p.y()) * (r.x() - p.x()));
         integral += triangle * (x * x + y * y + z * z + x * y + y * z + z * x) / 6;
         total += triangle;
     }
@@ -88,18 +105,23 @@ double rms_over(const Ring& ring, const Height& a, const Height& b) {
 
 }  // namespace
 
+double PlaneRelation::score(const MergeRules& rules) const {
+    return angle_rad / std::max(rules.angle_rad, 1e-9) + distance_m / std::max(rules.distance_m, 1e-9) +
+           gap_m / std::max(rules.gap_m, 1e-9);
+}
+
 PlaneRelation relate(const Plane& plane_a, const Box& box_a, const Plane& plane_b, const Box& box_b) {
     const Eigen::Vector3d both = plane_a.normal + plane_b.normal;
     const Eigen::Vector3d view = both.norm() > 1e-6 ? both.normalized().eval() : plane_a.normal;
     const Eigen::Matrix3d axes = plane_axes(view, box_a.frame_from_box.linear().col(0));
     const Eigen::Vector3d origin = box_a.frame_from_box.translation();
-    const Ring a = seen_along(axes, origin, box_a), b = seen_along(axes, origin, box_b);
+    const Corners a = seen_along(axes, origin, box_a), b = seen_along(axes, origin, box_b);
     const Height height_a(axes, origin, plane_a), height_b(axes, origin, plane_b);
 
     PlaneRelation relation;
     relation.angle_rad = angle_between(plane_a.normal, plane_b.normal);
-    const Ring overlap = clipped(b, a);
-    if (overlap.size() >= 3 && signed_area(overlap) > 1e-9) {
+    const Corners overlap = clipped(b, a);
+    if (overlap.count >= 3 && overlap.area() > 1e-9) {
         relation.distance_m = rms_over(overlap, height_a, height_b);
     } else {
         const NearestPoints nearest = nearest_points(a, b);

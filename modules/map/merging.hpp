@@ -21,6 +21,9 @@ struct PlaneRelation {
     double distance_m = 0;  ///< RMS distance between the planes over the overlap of the boxes; of boxes that
                             ///< do not overlap, midway between their nearest points
     double gap_m = 0;       ///< between the boxes within the plane, 0 when they overlap
+
+    /// How far the rules are used up, 0 to 3: the smaller, the better two regions fit.
+    double score(const MergeRules& rules) const;
 };
 
 /// Compares two regions by planes and boxes. It is symmetric, and it measures where both regions are:

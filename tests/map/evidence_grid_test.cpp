@@ -12,9 +12,24 @@ namespace {
 
 using scene::rectangle_ring;
 
+int add(EvidenceGrid& grid, const Outline& outline, int strength = 0) {
+    FlatPolygon polygon;
+    polygon.assign(outline);
+    return grid.add(polygon, strength);
+}
+
+OutlineOptions every_cell() {
+    OutlineOptions options;
+    options.min_ring_m2 = 0;
+    options.tolerance_m = 0;
+    return options;
+}
+
 TEST(EvidenceGrid, HasTheAreaOfWhatWasAdded) {
     EvidenceGrid grid(Pose::Identity(), 0.025);
-    grid.add(Outline{{rectangle_ring(-1, -0.5, 1, 0.5), rectangle_ring(-0.2, -0.2, 0.2, 0.2)}});
+    const int fresh =
+        add(grid, Outline{{rectangle_ring(-1, -0.5, 1, 0.5), rectangle_ring(-0.2, -0.2, 0.2, 0.2)}});
+    EXPECT_EQ(fresh, 2944) << "(2 - 0.16) / 0.025^2";
     const Outline outline = grid.outline({});
     EXPECT_EQ(outline.rings.size(), 2u);
     EXPECT_NEAR(area(outline), 2 - 0.16, 0.03);
@@ -24,62 +39,94 @@ TEST(EvidenceGrid, HasTheAreaOfWhatWasAdded) {
 
 TEST(EvidenceGrid, FillsTheCellsThatFillDoes) {
     std::mt19937_64 random(2);
-    std::uniform_real_distribution<double> c(-0.9, 0.9);
+    std::uniform_real_distribution<double> c(-4.4, 4.4);
     for (int trial = 0; trial < 20; ++trial) {
         Outline outline{{Ring{}}};
         for (int i = 0; i < 9; ++i) outline.rings[0].emplace_back(c(random), c(random));
         EvidenceGrid grid(Pose::Identity(), 0.05);
-        grid.add(outline);
+        add(grid, outline);
         Outline in_cells = outline;
-        for (auto& v : in_cells.rings[0]) v = v / 0.05 + Eigen::Vector2d(20, 20);
-        Mask mask(40, 40);
+        for (auto& v : in_cells.rings[0]) v = v / 0.05 + Eigen::Vector2d(90, 90);
+        Mask mask(180, 180);
         fill(in_cells, mask);
-        for (int y = 0; y < 40; ++y)
-            for (int x = 0; x < 40; ++x)
-                EXPECT_EQ(grid.views({0.05 * (x - 19.5), 0.05 * (y - 19.5)}), mask.at(x, y) ? 1 : 0);
+        for (int y = 0; y < 180; ++y)
+            for (int x = 0; x < 180; ++x)
+                ASSERT_EQ(grid.counts({0.05 * (x - 89.5), 0.05 * (y - 89.5)}).hits, mask.at(x, y) ? 1 : 0);
     }
 }
 
-TEST(EvidenceGrid, GrowsAndCountsViews) {
+TEST(EvidenceGrid, GrowsAndCounts) {
     EvidenceGrid grid(Pose::Identity(), 0.05);
-    grid.add(Outline{{rectangle_ring(0, 0, 1, 1)}});
-    grid.add(Outline{{rectangle_ring(0.5, 0, 3, 1)}});
-    grid.add(Outline{{rectangle_ring(-2, -2, -1, -1)}});
-    EXPECT_EQ(grid.views({0.2, 0.5}), 1);
-    EXPECT_EQ(grid.views({0.7, 0.5}), 2);
-    EXPECT_EQ(grid.views({2.7, 0.5}), 1);
-    EXPECT_EQ(grid.views({-1.5, -1.5}), 1);
-    EXPECT_EQ(grid.views({-0.5, -0.5}), 0);
-    EXPECT_EQ(grid.views({1e9, -1e9}), 0);
+    add(grid, Outline{{rectangle_ring(0, 0, 1, 1)}});
+    add(grid, Outline{{rectangle_ring(0.5, 0, 5, 1)}}, 1);
+    EXPECT_EQ(add(grid, Outline{{rectangle_ring(-2, -2, -1, -1)}}, 2), 400);
+    const auto hits = [&](double x, double y) { return grid.counts({x, y}).hits; };
+    EXPECT_EQ(hits(0.2, 0.5), 1);
+    EXPECT_EQ(hits(0.7, 0.5), 3);
+    EXPECT_EQ(hits(4.7, 0.5), 2);
+    EXPECT_EQ(hits(-1.5, -1.5), 4);
+    EXPECT_EQ(hits(-0.5, -0.5), 0);
+    EXPECT_EQ(hits(1e9, -1e9), 0);
     OutlineOptions twice;
-    twice.min_views = 2;
-    EXPECT_NEAR(area(grid.outline(twice)), 0.5, 1e-9);
-    EXPECT_NEAR(area(grid.outline({})), 4, 1e-9);
-    for (int i = 0; i < 300; ++i) grid.add(Outline{{rectangle_ring(0, 0, 1, 1)}});
-    EXPECT_EQ(grid.views({0.2, 0.5}), 255);
+    twice.min_hits = 3;
+    EXPECT_NEAR(area(grid.outline(twice)), 0.5 + 1, 1e-9);
+    EXPECT_NEAR(area(grid.outline({})), 6, 1e-9);
+    for (int i = 0; i < 300; ++i) add(grid, Outline{{rectangle_ring(0, 0, 1, 1)}}, i % 3);
+    EXPECT_EQ(hits(0.2, 0.5), EvidenceGrid::kMaxCount);
+    EXPECT_EQ(hits(4.7, 0.5), 2);
 }
 
 TEST(EvidenceGrid, AddsAnotherGridInAnotherFrame) {
     const Outline shape{{rectangle_ring(-1, -0.5, 1, 0.5), rectangle_ring(0.1, -0.2, 0.5, 0.2)}};
     EvidenceGrid other(scene::facing({0.3, 0.2, 0}, {0, 0, 1}, {0.8, 0.6, 0}), 0.025);
-    other.add(shape);
+    add(other, shape, 1);
     EvidenceGrid grid(Pose::Identity(), 0.025);
     grid.add(other);
-    EXPECT_NEAR(area(grid.outline({})), area(shape), 0.05);
+    EXPECT_NEAR(area(grid.outline({})), area(shape), 0.06);
     const Eigen::Vector3d hole = other.world_from_grid() * Eigen::Vector3d(0.3, 0, 0);
-    EXPECT_EQ(grid.views(hole.head<2>()), 0);
+    const Eigen::Vector3d solid = other.world_from_grid() * Eigen::Vector3d(-0.3, 0, 0);
+    EXPECT_EQ(grid.counts(hole.head<2>()).hits, 0);
+    EXPECT_EQ(grid.counts(solid.head<2>()).hits, 2);
     grid.add(EvidenceGrid(Pose::Identity(), 0.025));
-    EXPECT_NEAR(area(grid.outline({})), area(shape), 0.05);
+    EXPECT_NEAR(area(grid.outline({})), area(shape), 0.06);
 }
 
 TEST(EvidenceGrid, LeavesOutSmallPartsAndHoles) {
     EvidenceGrid grid(Pose::Identity(), 0.025);
-    grid.add(Outline{{rectangle_ring(0, 0, 1, 1), rectangle_ring(0.4, 0.4, 0.475, 0.475),
-                      rectangle_ring(2, 0, 2.075, 0.075)}});
+    add(grid, Outline{{rectangle_ring(0, 0, 1, 1), rectangle_ring(0.4, 0.4, 0.475, 0.475),
+                       rectangle_ring(2, 0, 2.075, 0.075)}});
     const Outline outline = grid.outline({});
     EXPECT_EQ(outline.rings.size(), 1u);
     EXPECT_NEAR(area(outline), 1, 1e-9);
     EXPECT_TRUE(EvidenceGrid().outline({}).empty());
+}
+
+TEST(EvidenceGrid, SliversNeedSupport) {
+    // A plate with a strip of 5 cm beside it that sticks out.
+    const Outline plate{{rectangle_ring(0, 0, 1, 1)}}, strip{{rectangle_ring(1, 0.5, 2, 0.55)}};
+    EvidenceGrid grid(Pose::Identity(), 0.025);
+    add(grid, plate);
+    add(grid, strip);
+    EXPECT_NEAR(area(grid.outline(every_cell())), 1, 1e-9) << "seen once, from afar";
+    for (int i = 0; i < 3; ++i) add(grid, strip, 2);
+    EXPECT_NEAR(area(grid.outline(every_cell())), 1.05, 1e-9) << "seen again and again";
+}
+
+TEST(EvidenceGrid, WhatIsLookedThroughMoreOftenThanSeenGoes) {
+    EvidenceGrid grid(Pose::Identity(), 0.025);
+    add(grid, Outline{{rectangle_ring(0, 0, 2, 1)}});
+    const auto left = [](const Eigen::Vector2d& p) { return p.x() < 1; };
+    EXPECT_EQ(grid.doubt(12, 0, left), 0) << "as often looked through as seen";
+    EXPECT_NEAR(area(grid.outline({})), 2, 1e-9);
+    EXPECT_EQ(grid.doubt(12, 0, left), 1600);
+    EXPECT_NEAR(area(grid.outline({})), 1, 1e-9);
+    EXPECT_EQ(grid.doubt(12, 0, left), 0) << "what is gone is not doubted again";
+    EXPECT_EQ(grid.counts({0.5, 0.5}).misses, 2);
+    EXPECT_EQ(grid.counts({1.5, 0.5}).misses, 0);
+    for (int i = 0; i < 3; ++i) add(grid, Outline{{rectangle_ring(0, 0, 2, 1)}}, 2);
+    EXPECT_NEAR(area(grid.outline({})), 2, 1e-9) << "seen again, from near";
+    for (int i = 0; i < 30; ++i) grid.doubt(12, 2, left);
+    EXPECT_NEAR(area(grid.outline({})), 2, 1e-9) << "beyond doubt";
 }
 
 TEST(EvidenceGrid, OutlinesDoNotCross) {
@@ -89,7 +136,7 @@ TEST(EvidenceGrid, OutlinesDoNotCross) {
         EvidenceGrid grid(Pose::Identity(), 0.025);
         for (int i = 0; i < 12; ++i) {
             const Eigen::Vector2d a(c(random), c(random)), b(c(random), c(random)), d(c(random), c(random));
-            grid.add(Outline{{Ring{a, b, d}}});
+            add(grid, Outline{{Ring{a, b, d}}});
         }
         OutlineOptions coarse;
         coarse.tolerance_m = 0.1;

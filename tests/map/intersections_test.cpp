@@ -11,8 +11,8 @@ namespace {
 using scene::facing;
 using scene::Rectangle;
 
-MapPlane plane_of(int id, const Rectangle& rectangle) {
-    return {id, scene::region_of(rectangle, Pose::Identity()), 1};
+PlaneShape plane_of(int id, const Rectangle& rectangle) {
+    return PlaneShape(MapPlane(id, scene::region_of(rectangle, Pose::Identity()), 1));
 }
 
 // A corner at (1, 1, 0): floor z = 0, walls x = 1 and y = 1.
@@ -21,7 +21,7 @@ const Rectangle kWallX{facing({1, 0, 1}, {-1, 0, 0}, {0, 1, 0}), 1, 1, {}};
 const Rectangle kWallY{facing({0, 1, 1}, {0, -1, 0}, {1, 0, 0}), 1, 1, {}};
 
 TEST(Intersections, OfARoomsCorner) {
-    const MapPlane floor = plane_of(4, kFloor), wall_x = plane_of(2, kWallX), wall_y = plane_of(7, kWallY);
+    const PlaneShape floor = plane_of(4, kFloor), wall_x = plane_of(2, kWallX), wall_y = plane_of(7, kWallY);
     const auto lines = intersection_lines(floor, wall_x, {});
     ASSERT_EQ(lines.size(), 1u);
     EXPECT_EQ(lines[0].plane_a, 2);
@@ -49,14 +49,14 @@ TEST(Intersections, AreCutToWhereBothAre) {
 TEST(Intersections, BreakAtADoor) {
     // The door reaches from the floor up, 0.8 m wide.
     Rectangle wall = kWallX;
-    MapPlane with_door = plane_of(2, wall);
+    PlaneShape with_door = plane_of(2, wall);
     Outline outline{
         {Ring{{-1, -1}, {-0.4, -1}, {-0.4, 0.9}, {0.4, 0.9}, {0.4, -1}, {1, -1}, {1, 1}, {-1, 1}}}};
     const Pose flip = facing({1, 0, 1}, {-1, 0, 0}, {0, 1, 0});
     // The face's y axis points down for this wall; put the door's foot on the floor.
     if (flip.linear().col(1).z() < 0)
         for (auto& v : outline.rings[0]) v.y() = -v.y();
-    with_door.outline = MapOutline(outline);
+    with_door.outline = outline;
     const auto lines = intersection_lines(plane_of(1, kFloor), with_door, {});
     ASSERT_EQ(lines.size(), 2u);
     for (const auto& line : lines) EXPECT_NEAR((line.to - line.from).norm(), 0.6, 1e-6);

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "map/stored_keyframe.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace planemap {
+
+namespace {
+
+constexpr double kStep_m = 0.001, kMaxSteps = 32767;
+
+/// The region's frame with z exactly its plane's normal and the origin on the plane, whatever its box says.
+Pose level_box(const PlanarRegion& region) {
+    Pose frame = Pose::Identity();
+    frame.linear() = plane_axes(region.plane.normal, region.box.frame_from_box.linear().col(0));
+    frame.translation() = region.plane.project(region.box.frame_from_box.translation());
+    return frame;
+}
+
+void pack(const Outline& outline, const Pose& box_from_outline, float& unit,
+          std::vector<std::int16_t>& packed) {
+    std::vector<Eigen::Vector2d> vertices;
+    double largest = 0;
+    for (const Ring& ring : outline.rings) {
+        for (const Eigen::Vector2d& v : ring) {
+            vertices.emplace_back((box_from_outline * Eigen::Vector3d(v.x(), v.y(), 0)).head<2>());
+            largest = std::max(largest, vertices.back().cwiseAbs().maxCoeff());
+        }
+    }
+    unit = static_cast<float>(std::max(kStep_m, largest / kMaxSteps));
+    const auto steps = [&](double metres) {
+        return static_cast<std::int16_t>(
+            std::clamp(std::round(metres / static_cast<double>(unit)), -kMaxSteps, kMaxSteps));
+    };
+    std::size_t next = 0;
+    for (const Ring& ring : outline.rings) {
+        packed.push_back(static_cast<std::int16_t>(ring.size()));
+        for (std::size_t i = 0; i < ring.size(); ++i, ++next)
+            packed.insert(packed.end(), {steps(vertices[next].x()), steps(vertices[next].y())});
+    }
+}
+
+}  // namespace
+
+Sight::Sight(const std::vector<PlanarRegion>& regions) {
+    // Vertices as directions; what lies behind the camera or beside it says nothing.
+    std::vector<FlatPolygon> seen(std::min<std::size_t>(regions.size(), kNone));
+    Eigen::Vector2d low = Eigen::Vector2d::Constant(1e9), high = -low;
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+        bool in_front = true;
+        for (const Ring& ring : regions[i].outline.rings) {
+            for (const Eigen::Vector2d& v : ring) {
+                const Eigen::Vector3d p = regions[i].box.frame_from_box * Eigen::Vector3d(v.x(), v.y(), 0);
+                in_front = in_front && p.z() > 0.05;
+                seen[i].vertices.emplace_back(p.head<2>() / p.z());
+            }
+            seen[i].ring_ends.push_back(seen[i].vertices.size());
+        }
+        if (!in_front) seen[i].clear();
+        for (const auto& v : seen[i].vertices) {
+            low = low.cwiseMin(v.cwiseMax(-4.0));
+            high = high.cwiseMax(v.cwiseMin(4.0));
+        }
+    }
+    if (!(low.x() < high.x() && low.y() < high.y())) return;
+    low_ = low;
+    per_cell_ = Eigen::Vector2d(kWidth, kHeight).cwiseQuotient(high - low);
+
+    // Which regions hold the corners of the cells.
+    constexpr int kColumns = kWidth + 1, kRows = kHeight + 1;
+    std::array<std::uint8_t, static_cast<std::size_t>(kColumns) * kRows> inside;
+    std::array<double, kWidth * kHeight> nearest;
+    nearest.fill(std::numeric_limits<double>::infinity());
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+        if (seen[i].vertices.empty()) continue;
+        inside.fill(0);
+        std::size_t begin = 0;
+        for (const std::size_t end : seen[i].ring_ends) {
+            for (std::size_t k = begin, j = end - 1; k < end; j = k++) {
+                Eigen::Vector2d a = (seen[i].vertices[j] - low_).cwiseProduct(per_cell_);
+                Eigen::Vector2d b = (seen[i].vertices[k] - low_).cwiseProduct(per_cell_);
+                if (a.y() > b.y()) std::swap(a, b);
+                const int from = std::max(0, static_cast<int>(std::ceil(std::max(a.y(), -1.0))));
+                const int to = std::min(kRows, static_cast<int>(std::ceil(std::min(b.y(), kRows + 1.0))));
+                for (int y = from; y < to; ++y) {
+                    const double x = a.x() + (y - a.y()) * (b.x() - a.x()) / (b.y() - a.y());
+                    const double until = std::clamp(std::ceil(x), 0.0, static_cast<double>(kColumns));
+                    for (int c = 0; c < static_cast<int>(until); ++c)
+                        inside[static_cast<std::size_t>(y * kColumns + c)] ^= 1;
+                }
+            }
+            begin = end;
+        }
+        for (int y = 0; y < kHeight; ++y) {
+            for (int x = 0; x < kWidth; ++x) {
+                const auto corner = static_cast<std::size_t>(y * kColumns + x);
+                if ((inside[corner] & inside[corner + 1] & inside[corner + kColumns] &
+                     inside[corner + kColumns + 1]) == 0)
+                    continue;
+                const Eigen::Vector3d ray(low_.x() + (x + 0.5) / per_cell_.x(),
+                                          low_.y() + (y + 0.5) / per_cell_.y(), 1);
+                const double depth = -regions[i].plane.d / regions[i].plane.normal.dot(ray);
+                const auto cell = static_cast<std::size_t>(y * kWidth + x);
+                if (!(depth > 0 && depth < nearest[cell])) continue;
+                nearest[cell] = depth;
+                cells_[cell] = static_cast<std::uint8_t>(i);
+            }
+        }
+    }
+}
+
+StoredKeyframe stored(std::int64_t utime, const std::vector<PlanarRegion>& regions) {
+    StoredKeyframe keyframe;
+    keyframe.utime = utime;
+    keyframe.sight = Sight(regions);
+    keyframe.regions.reserve(regions.size());
+    for (const PlanarRegion& region : regions) {
+        StoredRegion& s = keyframe.regions.emplace_back();
+        const Pose camera_from_box = level_box(region);
+        const Eigen::Matrix3d r = camera_from_box.linear();
+        const Eigen::Matrix3d c = r.transpose() * region.moments.covariance() * r;
+        s.count = static_cast<float>(region.moments.count);
+        s.mean = region.moments.mean().cast<float>();
+        const std::array<double, 6> covariance{c(0, 0), c(1, 1), c(2, 2), c(0, 1), c(0, 2), c(1, 2)};
+        std::transform(covariance.begin(), covariance.end(), s.covariance.begin(),
+                       [](double value) { return static_cast<float>(value); });
+        s.camera_from_box = Eigen::Quaterniond(r).normalized().cast<float>();
+        s.center = camera_from_box.translation().cast<float>();
+        s.half_extents = region.box.half_extents.head<2>().cast<float>();
+        s.first = static_cast<std::uint32_t>(keyframe.vertices.size());
+        pack(region.outline, camera_from_box.inverse(Eigen::Isometry) * region.box.frame_from_box, s.unit,
+             keyframe.vertices);
+        s.last = static_cast<std::uint32_t>(keyframe.vertices.size());
+    }
+    keyframe.vertices.shrink_to_fit();
+    return keyframe;
+}
+
+PlacedRegion::PlacedRegion(const Pose& world_from_camera, const StoredRegion& region) {
+    const Eigen::Quaterniond camera_from_box =
+        Eigen::Quaterniond(region.camera_from_box.cast<double>()).normalized();
+    const Eigen::Matrix3d world_from_box = world_from_camera.linear() * camera_from_box.toRotationMatrix();
+    box.frame_from_box.linear() = world_from_box;
+    box.frame_from_box.translation() = world_from_camera * region.center.cast<double>();
+    box.half_extents << region.half_extents.cast<double>(), 0;
+    plane.normal = world_from_box.col(2);
+    plane.d = -plane.normal.dot(box.frame_from_box.translation());
+
+    const auto& c = region.covariance;
+    Eigen::Matrix3d covariance;
+    covariance << static_cast<double>(c[0]), static_cast<double>(c[3]), static_cast<double>(c[4]),
+        static_cast<double>(c[3]), static_cast<double>(c[1]), static_cast<double>(c[5]),
+        static_cast<double>(c[4]), static_cast<double>(c[5]), static_cast<double>(c[2]);
+    const Eigen::Vector3d mean = world_from_camera * region.mean.cast<double>();
+    moments.count = static_cast<double>(region.count);
+    moments.sum = moments.count * mean;
+    moments.scatter =
+        moments.count * (world_from_box * covariance * world_from_box.transpose() + mean * mean.transpose());
+}
+
+void outline_in(const Pose& a_from_box, const StoredRegion& region, const StoredKeyframe& owner,
+                FlatPolygon& polygon) {
+    polygon.clear();
+    const Eigen::Vector2d origin = a_from_box.translation().head<2>();
+    const Eigen::Matrix2d turn = a_from_box.linear().topLeftCorner<2, 2>();
+    if (region.first == region.last) {
+        const Eigen::Vector2d x = static_cast<double>(region.half_extents.x()) * turn.col(0);
+        const Eigen::Vector2d y = static_cast<double>(region.half_extents.y()) * turn.col(1);
+        for (const Eigen::Vector2d& corner : {Eigen::Vector2d(-x - y), Eigen::Vector2d(x - y),
+                                              Eigen::Vector2d(x + y), Eigen::Vector2d(y - x)})
+            polygon.vertices.push_back(origin + corner);
+        polygon.ring_ends = {4};
+        return;
+    }
+    const Eigen::Matrix2d steps = static_cast<double>(region.unit) * turn;
+    for (std::size_t i = region.first; i < region.last;) {
+        for (std::size_t end = i + 1 + 2 * static_cast<std::size_t>(owner.vertices[i]), k = i + 1; k < end;
+             k += 2)
+            polygon.vertices.push_back(origin + owner.vertices[k] * steps.col(0) +
+                                       owner.vertices[k + 1] * steps.col(1));
+        i += 1 + 2 * static_cast<std::size_t>(owner.vertices[i]);
+        polygon.ring_ends.push_back(polygon.vertices.size());
+    }
+}
+
+std::size_t memory_bytes(const StoredKeyframe& keyframe) {
+    return sizeof keyframe + keyframe.regions.capacity() * sizeof(StoredRegion) +
+           keyframe.vertices.capacity() * sizeof(std::int16_t);
+}
+
+}  // namespace planemap

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A keyframe's regions as they are kept, so that the map can be rebuilt when the keyframe moves.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/keyframe.hpp"
+#include "map/evidence_grid.hpp"
+
+namespace planemap {
+
+/// A planar region in 92 bytes and 4 a vertex of its outline, camera frame. Single precision about the
+/// region's own centre and axes: a micrometre at ten metres.
+struct StoredRegion {
+    using Rotation = Eigen::Quaternion<float, Eigen::DontAlign>;
+
+    float count = 0;                                         ///< N
+    Eigen::Vector3f mean = Eigen::Vector3f::Zero();          ///< of the points
+    std::array<float, 6> covariance{};                       ///< in the box's axes: xx, yy, zz, xy, xz, yz
+    Rotation camera_from_box = Rotation::Identity();         ///< z: the plane's normal, towards the camera
+    Eigen::Vector3f center = Eigen::Vector3f::Zero();        ///< of the box, on the plane
+    Eigen::Vector2f half_extents = Eigen::Vector2f::Zero();  ///< of the box
+    float unit = 0;                                          ///< metres a step of the outline's vertices
+    std::uint32_t first = 0, last = 0;  ///< of StoredKeyframe::vertices; last is one past the end
+    int plane = -1;                     ///< id of the map plane it went to; -1: none
+};
+
+/// Which way regions lie, seen from the camera: a coarse image of them, to tell what was looked through.
+class Sight {
+  public:
+    static constexpr int kWidth = 32, kHeight = 24;  ///< cells
+    static constexpr std::uint8_t kNone = 255;
+
+    /// From the outlines of the regions, camera frame; the first 255 count. A cell holds a region that covers
+    /// all of it, the nearest where several do.
+    explicit Sight(const std::vector<PlanarRegion>& regions);
+    Sight() = default;
+
+    /// The region that fills the cell a point is seen in, or kNone. Camera frame.
+    std::uint8_t region_at(const Eigen::Vector3d& p_camera) const {
+        if (!(p_camera.z() > 0.05)) return kNone;
+        const double x = (p_camera.x() / p_camera.z() - low_.x()) * per_cell_.x();
+        const double y = (p_camera.y() / p_camera.z() - low_.y()) * per_cell_.y();
+        if (!(x >= 0 && y >= 0 && x < kWidth && y < kHeight)) return kNone;
+        return cells_[static_cast<std::size_t>(static_cast<int>(y) * kWidth + static_cast<int>(x))];
+    }
+    /// The directions it covers: x / z and y / z in the camera.
+    const Eigen::Vector2d& low() const { return low_; }
+    Eigen::Vector2d high() const {
+        return low_ + Eigen::Vector2d(kWidth / per_cell_.x(), kHeight / per_cell_.y());
+    }
+
+  private:
+    Eigen::Vector2d low_ = Eigen::Vector2d::Zero(), per_cell_ = Eigen::Vector2d::Ones();
+    std::array<std::uint8_t, kWidth* kHeight> cells_ = [] {
+        std::array<std::uint8_t, kWidth * kHeight> none{};
+        none.fill(kNone);
+        return none;
+    }();
+};
+
+struct StoredKeyframe {
+    std::int64_t utime = 0;
+    std::vector<StoredRegion> regions;      ///< by falling number of inliers
+    std::vector<std::int16_t> vertices;     ///< of all regions: a ring's size, then its x, y, ring after ring
+    Sight sight;                            ///< regions as indexed here
+    std::optional<Pose> world_from_camera;  ///< the pose it is in the map with
+};
+
+/// Keeps what the map needs of a keyframe's regions; they must be valid. Vertices are rounded to a
+/// millimetre.
+StoredKeyframe stored(std::int64_t utime, const std::vector<PlanarRegion>& regions);
+
+/// A region where it is in the world.
+struct PlacedRegion {
+    Plane plane;
+    Box box;
+    Moments moments;  ///< exact
+
+    PlacedRegion(const Pose& world_from_camera, const StoredRegion& region_camera);
+};
+
+/// Depth of the region's points in the camera, on average, metres.
+inline double mean_depth(const StoredRegion& region_camera) {
+    return static_cast<double>(region_camera.mean.z());
+}
+
+/// The region's outline in the x and y of frame a, seen along its z; its box where it has no outline.
+void outline_in(const Pose& a_from_box, const StoredRegion& region, const StoredKeyframe& owner,
+                FlatPolygon& polygon_a);
+
+/// Bytes it takes, by capacity.
+std::size_t memory_bytes(const StoredKeyframe& keyframe);
+
+}  // namespace planemap

@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "map/surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <queue>
+#include <tuple>
+
+namespace planemap {
+
+namespace {
+
+/// A surface whose plane turned further than this against its frames gets new ones.
+constexpr double kMaxTilt = 0.9994;  // cosine of 2 deg
+
+Moments scaled(const Moments& moments, double factor) {
+    return {factor * moments.count, factor * moments.sum, factor * moments.scatter};
+}
+
+const std::array<Eigen::Vector2d, Extent::kDirections>& directions() {
+    static const auto table = [] {
+        std::array<Eigen::Vector2d, Extent::kDirections> d;
+        for (std::size_t i = 0; i < d.size(); ++i) {
+            const double angle = 2 * std::numbers::pi * static_cast<double>(i) / Extent::kDirections;
+            d[i] = {std::cos(angle), std::sin(angle)};
+        }
+        return d;
+    }();
+    return table;
+}
+
+}  // namespace
+
+Extent::Extent() {
+    reach_.fill(-1e300);
+}
+
+void Extent::add(const Eigen::Vector2d& p) {
+    const auto& d = directions();
+    for (std::size_t i = 0; i < kDirections; ++i)
+        reach_[i] = std::max(reach_[i], d[i].x() * p.x() + d[i].y() * p.y());
+}
+
+std::array<Eigen::Vector2d, Extent::kDirections> Extent::corners() const {
+    // Each half-plane touches the points, so neighbouring ones meet in the corners of their intersection.
+    static const double sine = std::sin(2 * std::numbers::pi / kDirections);
+    const auto& d = directions();
+    std::array<Eigen::Vector2d, kDirections> corners;
+    for (std::size_t i = 0; i < kDirections; ++i) {
+        const std::size_t j = (i + 1) % kDirections;
+        corners[i] = Eigen::Vector2d(reach_[i] * d[j].y() - reach_[j] * d[i].y(),
+                                     reach_[j] * d[i].x() - reach_[i] * d[j].x()) /
+                     sine;
+    }
+    return corners;
+}
+
+Surface::Surface(const PlacedRegion& region, const FlatPolygon& outline_box, double weight)
+    : plane(region.plane), world_from_extent(region.box.frame_from_box) {
+    long_axis_ = region.box.frame_from_box.linear().col(0);
+    add(region, outline_box, weight);
+    refit();
+}
+
+Surface::Surface(const MapPlane& map_plane, double cell_m)
+    : id(map_plane.id),
+      plane(map_plane.plane()),
+      world_from_extent(map_plane.world_from_plane()),
+      grid(map_plane.world_from_plane(), cell_m),
+      keyframes(map_plane.keyframes) {
+    // Moments of points spread evenly over the outline, with the plane's spread about it.
+    const Outline outline = map_plane.outline.rings();
+    const Eigen::Vector2d half = map_plane.half_extents.cast<double>().cwiseMax(0.01);
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+    covariance.diagonal() << half.x() * half.x() / 3, half.y() * half.y() / 3,
+        std::pow(static_cast<double>(map_plane.rms), 2);
+    const Eigen::Matrix3d r = world_from_extent.linear();
+    const Eigen::Vector3d mean = world_from_extent.translation();
+    moments.count = map_plane.inliers;
+    moments.sum = moments.count * mean;
+    moments.scatter = moments.count * (r * covariance * r.transpose() + mean * mean.transpose());
+    weighted = moments;
+    facing = moments.count * plane.normal;
+    FlatPolygon polygon;
+    polygon.assign(outline);
+    for (const Eigen::Vector2d& v : polygon.vertices) extent.add(v);
+    for (const double x : {-half.x(), half.x()})
+        for (const double y : {-half.y(), half.y()}) extent.add({x, y});
+    for (const int strength : {2, 2, 2}) grid.add(polygon, strength);
+    refit();
+}
+
+void Surface::add(const PlacedRegion& region, const FlatPolygon& outline_extent, double weight) {
+    moments += region.moments;
+    const Moments w = scaled(region.moments, weight);
+    weighted += w;
+    facing += w.count * region.plane.normal;
+    for (const Eigen::Vector2d& v : outline_extent.vertices) extent.add(v);
+    changed = true;
+    if (weighted.count > 1.1 * fitted_weight) {
+        refit();
+    } else {
+        rebox();
+    }
+}
+
+void Surface::absorb(const Surface& other) {
+    moments += other.moments;
+    weighted += other.weighted;
+    facing += other.facing;
+    keyframes += other.keyframes;
+    last_keyframe = std::max(last_keyframe, other.last_keyframe);
+    const Pose extent_from_other = world_from_extent.inverse(Eigen::Isometry) * other.world_from_extent;
+    for (const Eigen::Vector2d& v : other.extent.corners())
+        extent.add((extent_from_other * Eigen::Vector3d(v.x(), v.y(), 0)).head<2>());
+    if (other.grid.memory_bytes() > grid.memory_bytes()) {
+        EvidenceGrid larger = other.grid;
+        larger.add(grid);
+        grid = std::move(larger);
+    } else {
+        grid.add(other.grid);
+    }
+    unshown += 1 << 20;
+    refit();
+}
+
+void Surface::refit() {
+    const PlaneFit fit = fit_plane(weighted);
+    if (fit.valid) {
+        plane = fit.plane;
+        long_axis_ = fit.axes.col(2);
+    }
+    if (plane.normal.dot(facing) < 0) plane = plane.flipped();
+    fitted_weight = weighted.count;
+    changed = true;
+    if (world_from_extent.linear().col(2).dot(plane.normal) < kMaxTilt) {
+        Pose level = Pose::Identity();
+        level.linear() = plane_axes(plane.normal, world_from_extent.linear().col(0));
+        level.translation() = plane.project(world_from_extent.translation());
+        const Pose level_from_extent = level.inverse(Eigen::Isometry) * world_from_extent;
+        Extent turned;
+        for (const Eigen::Vector2d& v : extent.corners())
+            turned.add((level_from_extent * Eigen::Vector3d(v.x(), v.y(), 0)).head<2>());
+        extent = turned;
+        world_from_extent = level;
+    }
+    if (!grid.empty() && grid.world_from_grid().linear().col(2).dot(plane.normal) < kMaxTilt) {
+        Pose level = Pose::Identity();
+        level.linear() = plane_axes(plane.normal, long_axis_);
+        level.translation() = plane.project(grid.world_from_grid().translation());
+        EvidenceGrid turned(level, grid.cell_m());
+        turned.add(grid);
+        grid = std::move(turned);
+        unshown += 1 << 20;
+    }
+    rebox();
+}
+
+void Surface::rebox() {
+    const Eigen::Matrix3d axes = plane_axes(plane.normal, long_axis_);
+    const Eigen::Matrix<double, 2, 3> flat = axes.leftCols<2>().transpose();
+    const Eigen::Matrix2d turn = flat * world_from_extent.linear().leftCols<2>();
+    const Eigen::Vector2d origin = flat * world_from_extent.translation();
+    Eigen::Vector2d from = Eigen::Vector2d::Constant(1e300), to = -from;
+    for (const Eigen::Vector2d& v : extent.corners()) {
+        const Eigen::Vector2d p = origin + turn * v;
+        from = from.cwiseMin(p);
+        to = to.cwiseMax(p);
+    }
+    const Eigen::Vector2d middle = 0.5 * (from + to), half = 0.5 * (to - from);
+    box.frame_from_box.linear() = axes;
+    box.frame_from_box.translation() = axes * Eigen::Vector3d(middle.x(), middle.y(), -plane.d);
+    box.half_extents << half, 0;
+    const Eigen::Vector3d reach = axes.col(0).cwiseAbs() * half.x() + axes.col(1).cwiseAbs() * half.y();
+    low = box.frame_from_box.translation() - reach;
+    high = box.frame_from_box.translation() + reach;
+}
+
+SurfaceSet::Bounds SurfaceSet::bounds_of(const Surface& surface) {
+    return {surface.plane.normal, surface.low, surface.high, surface.plane.d};
+}
+
+std::size_t SurfaceSet::push_back(Surface surface) {
+    bounds_.push_back(bounds_of(surface));
+    surfaces_.push_back(std::move(surface));
+    return surfaces_.size() - 1;
+}
+
+void SurfaceSet::update(std::size_t i) {
+    bounds_[i] = bounds_of(surfaces_[i]);
+}
+
+bool SurfaceSet::may_touch(const Bounds& a, const Bounds& b) const {
+    if (a.normal.dot(b.normal) < std::cos(rules_.angle_rad)) return false;
+    const double gap = rules_.gap_m + rules_.distance_m;
+    return ((a.low.array() <= b.high.array() + gap) && (b.low.array() <= a.high.array() + gap)).all();
+}
+
+std::optional<PlaneRelation> SurfaceSet::relation(const Surface& a, const Surface& b) const {
+    const double apart = (a.box.frame_from_box.translation() - b.box.frame_from_box.translation()).norm();
+    if (apart + a.box.half_extents.norm() + b.box.half_extents.norm() > max_extent_m_) return std::nullopt;
+    return same_plane(a.plane, a.box, b.plane, b.box, rules_);
+}
+
+std::size_t SurfaceSet::partner_of(const PlacedRegion& region) const {
+    const Eigen::Matrix3d& axes = region.box.frame_from_box.linear();
+    const Eigen::Vector3d reach = axes.col(0).cwiseAbs() * region.box.half_extents.x() +
+                                  axes.col(1).cwiseAbs() * region.box.half_extents.y();
+    const Eigen::Vector3d center = region.box.frame_from_box.translation();
+    const Bounds bounds{region.plane.normal, center - reach, center + reach, region.plane.d};
+    std::size_t best = none();
+    double best_score = 0;
+    for (std::size_t i = 0; i < bounds_.size(); ++i) {
+        if (!may_touch(bounds, bounds_[i])) continue;
+        const Surface& surface = surfaces_[i];
+        const double length = (center - surface.box.frame_from_box.translation()).norm() +
+                              region.box.half_extents.norm() + surface.box.half_extents.norm();
+        if (length > max_extent_m_) continue;
+        const auto relation = same_plane(region.plane, region.box, surface.plane, surface.box, rules_);
+        if (!relation) continue;
+        const double score = relation->score(rules_);
+        if (best == none() || score < best_score) {
+            best = i;
+            best_score = score;
+        }
+    }
+    return best;
+}
+
+std::vector<std::size_t> SurfaceSet::merge(const std::vector<std::size_t>& grown) {
+    // Pairs by score; a pair counts while neither of the two has changed.
+    using Pair = std::tuple<double, std::size_t, std::size_t, int, int>;
+    std::priority_queue<Pair, std::vector<Pair>, std::greater<>> pairs;
+    std::vector<int> version(surfaces_.size(), 0);
+    std::vector<std::size_t> into(surfaces_.size());
+    std::iota(into.begin(), into.end(), std::size_t{0});
+    std::vector<char> asked(surfaces_.size(), 0);
+    const auto ask = [&](std::size_t i) {
+        for (std::size_t j = 0; j < surfaces_.size(); ++j) {
+            if (j == i || into[j] != j || asked[j] != 0 || !may_touch(bounds_[i], bounds_[j])) continue;
+            const auto [a, b] = std::minmax(i, j);
+            if (const auto r = relation(surfaces_[a], surfaces_[b]))
+                pairs.emplace(r->score(rules_), a, b, version[a], version[b]);
+        }
+    };
+    for (const std::size_t i : grown) {
+        ask(i);
+        asked[i] = 1;  // its pairs are known
+    }
+    asked.assign(surfaces_.size(), 0);
+    while (!pairs.empty()) {
+        const auto [score, a, b, version_a, version_b] = pairs.top();
+        pairs.pop();
+        if (into[a] != a || into[b] != b || version[a] != version_a || version[b] != version_b) continue;
+        const int id = std::min(surfaces_[a].id, surfaces_[b].id);
+        surfaces_[a].absorb(surfaces_[b]);
+        surfaces_[a].id = id;
+        update(a);
+        into[b] = a;
+        ++version[a];
+        ask(a);
+    }
+
+    // Close the gaps.
+    std::vector<std::size_t> now(surfaces_.size());
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+        if (into[i] != i) {
+            now[i] = now[into[i]];  // of two, the one with the smaller index stays
+            continue;
+        }
+        now[i] = kept;
+        if (kept != i) {
+            surfaces_[kept] = std::move(surfaces_[i]);
+            bounds_[kept] = bounds_[i];
+        }
+        ++kept;
+    }
+    surfaces_.resize(kept);
+    bounds_.resize(kept);
+    return now;
+}
+
+}  // namespace planemap
