@@ -26,12 +26,34 @@ if(PLANEMAP_SANITIZE)
     add_link_options(-fsanitize=${PLANEMAP_SANITIZE})
 endif()
 
+# Most of what compiling takes is reading Eigen and the standard library, so that is done once. A precompiled header
+# belongs to one way of generating code: libraries are -fPIC, tests -fPIE.
+option(PLANEMAP_PRECOMPILE "Precompile the headers that nearly all files include" ON)
+function(planemap_precompiled name)
+    cmake_parse_arguments(ARG "" "" "HEADERS;LIBS;OPTIONS" ${ARGN})
+    if(PLANEMAP_PRECOMPILE)
+        file(WRITE ${CMAKE_BINARY_DIR}/generated/${name}.cpp.new "// Nothing but its precompiled header.\n")
+        file(COPY_FILE ${CMAKE_BINARY_DIR}/generated/${name}.cpp.new ${CMAKE_BINARY_DIR}/generated/${name}.cpp ONLY_IF_DIFFERENT)
+        add_library(${name} OBJECT ${CMAKE_BINARY_DIR}/generated/${name}.cpp)
+        target_link_libraries(${name} PRIVATE planemap_options Eigen3::Eigen ${ARG_LIBS})
+        target_compile_options(${name} PRIVATE ${ARG_OPTIONS})
+        target_precompile_headers(${name} PRIVATE <algorithm> <array> <cmath> <filesystem> <functional> <map> <memory>
+            <optional> <random> <set> <string> <thread> <vector> <Eigen/Dense> ${ARG_HEADERS})
+    endif()
+endfunction()
+function(planemap_use_precompiled target name)
+    if(TARGET ${name})
+        target_precompile_headers(${target} REUSE_FROM ${name})
+    endif()
+endfunction()
+
 # planemap_library(NAME SOURCES... [PUBLIC libs...] [PRIVATE libs...])
 function(planemap_library name)
     cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
     add_library(${name} STATIC ${ARG_SOURCES})
     target_include_directories(${name} PUBLIC ${CMAKE_SOURCE_DIR}/modules)
     target_link_libraries(${name} PUBLIC ${ARG_PUBLIC} PRIVATE planemap_options ${ARG_PRIVATE})
+    planemap_use_precompiled(${name} planemap_precompiled)
 endfunction()
 
 # planemap_program(NAME SOURCES... LIBS...): an executable in build/bin.
