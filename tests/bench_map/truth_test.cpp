@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace planemap::bench_map {
 namespace {
 
@@ -22,7 +24,7 @@ sim::View look(const sim::World& world, double x, double y) {
     pose.linear().col(0) = Vector3d::UnitX();
     pose.linear().col(1) = -Vector3d::UnitZ();
     pose.linear().col(2) = Vector3d::UnitY();
-    pose.translation() = {x, y, 0};
+    pose.translation() = Vector3d(x, y, 0);
     return render_view(world, kCamera, pose);
 }
 
