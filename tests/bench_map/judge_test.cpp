@@ -166,5 +166,19 @@ TEST(Judge, NamesPlanesThatTheMapperMayMerge) {
     EXPECT_NEAR(judgement.look_alikes[0].distance_m, 0.03, 1e-9);
 }
 
+TEST(Judge, NamesTheTruePlanesThatShareAMapPlane) {
+    std::vector<Face> faces = room();
+    const PlaneMap map = map_of(faces);
+    faces.push_back({"doormat", {0, 0, 0.03}, {0, 0, 1}, {1, 0, 0}, 0.2, 0.2});
+    faces.push_back({"coaster", {1, 0, 0.03}, {0, 0, 1}, {1, 0, 0}, 0.05, 0.05});
+    const Judgement judgement = judge(truth_of(faces), map, Pose::Identity());
+    ASSERT_EQ(judgement.shared.size(), 1u);
+    EXPECT_EQ(judgement.shared[0].id, 10);
+    ASSERT_EQ(judgement.shared[0].shares.size(), 2u);
+    EXPECT_EQ(judgement.shared[0].shares[0].plane, 0u);
+    EXPECT_EQ(judgement.shared[0].shares[1].plane, 5u);
+    EXPECT_NEAR(judgement.shared[0].shares[1].area, 0.16, 0.01);
+}
+
 }  // namespace
 }  // namespace planemap::bench_map

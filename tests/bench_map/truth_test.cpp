@@ -85,6 +85,21 @@ TEST(TruthCollector, PartsOfOnePlaneBelongTogetherWithinHalfAMetre) {
     }
 }
 
+TEST(TruthCollector, ItIsTheBoxesOfPartsThatAreNear) {
+    sim::WorldBuilder builder("test", 1);
+    // A frame of an L, and a piece in its corner that is 0.7 m from either leg.
+    builder.add_panel("low", {-1, 2, -0.6}, Vector3d::UnitX(), -Vector3d::UnitZ(), 2, 0.1,
+                      {sim::Pattern::kPaint, {1, 1, 1}});
+    builder.add_panel("left", {-1, 2, 0.7}, Vector3d::UnitX(), -Vector3d::UnitZ(), 0.1, 1.35,
+                      {sim::Pattern::kPaint, {1, 1, 1}});
+    builder.add_panel("middle", {0.2, 2, 0.5}, Vector3d::UnitX(), -Vector3d::UnitZ(), 0.3, 0.3,
+                      {sim::Pattern::kPaint, {1, 1, 1}});
+    TruthCollector truth(builder.world());
+    truth.add(look(builder.world(), 0, 0), {});
+    ASSERT_EQ(truth.planes().size(), 1u);
+    EXPECT_EQ(truth.planes()[0].name, "low+2");
+}
+
 TEST(TruthCollector, ThingsBeforeEachOtherAreTwoPlanes) {
     sim::WorldBuilder builder("test", 1);
     add_panel(builder, "front", -0.5, 0.1, 2);

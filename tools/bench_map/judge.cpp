@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr double kParallel_deg = 5, kLeastDistance_m = 0.3, kSameRoom_m = 6;
-constexpr double kMergeGap_m = 0.5;
+constexpr double kMergeGap_m = 0.5, kLeastShare_m2 = 0.05;
 constexpr double kCellArea = PlaneRaster::kCell_m * PlaneRaster::kCell_m;
 
 /// A plane of the map in the truth's world.
@@ -113,6 +113,20 @@ std::vector<SpuriousPlane> spurious_among(const std::vector<Candidate>& candidat
         if (share < 0.5) spurious.push_back({candidates[i].id, candidates[i].area, share});
     }
     return spurious;
+}
+
+std::vector<SharedPlane> shared_among(const std::vector<Candidate>& candidates,
+                                      const std::vector<std::vector<double>>& overlaps) {
+    std::vector<SharedPlane> shared;
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+        SharedPlane plane{candidates[i].id, {}};
+        for (std::size_t column = 0; column < overlaps[i].size(); ++column)
+            if (overlaps[i][column] > kLeastShare_m2) plane.shares.push_back({column, overlaps[i][column]});
+        std::stable_sort(plane.shares.begin(), plane.shares.end(),
+                         [](const auto& a, const auto& b) { return a.area > b.area; });
+        if (plane.shares.size() > 1) shared.push_back(std::move(plane));
+    }
+    return shared;
 }
 
 /// Angle between the normals, or between one and the other's opposite if that is less.
@@ -230,6 +244,7 @@ Judgement judge(const std::vector<TruePlane>& truth, const PlaneMap& map, const 
         matches.push_back({i, truth[i].plane, best->plane, truth[i].centre()});
     }
     judgement.spurious = spurious_among(candidates, overlaps);
+    judgement.shared = shared_among(candidates, overlaps);
     for (std::size_t i = 0; i < matches.size(); ++i)
         for (std::size_t j = i + 1; j < matches.size(); ++j) measure(matches[i], matches[j], judgement);
     find_look_alikes(truth, judgement);

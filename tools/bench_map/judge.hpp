@@ -37,6 +37,16 @@ struct SpuriousPlane {
     double on_true_plane = 0;  ///< share of it
 };
 
+/// A map plane that is on several true planes, however small.
+struct SharedPlane {
+    struct Share {
+        std::size_t plane = 0;  ///< index into Judgement::planes
+        double area = 0;        ///< of the overlap, square metres
+    };
+    int id = -1;
+    std::vector<Share> shares;  ///< of more than 0.05 m2, from the largest
+};
+
 /// A distance (metres) or an angle (degrees) between two found planes, by index into Judgement::planes.
 struct PairMeasure {
     std::size_t a = 0, b = 0;
@@ -53,6 +63,7 @@ struct LookAlikes {
 struct Judgement {
     std::vector<TruePlaneVerdict> planes;  ///< in the order of the truth
     std::vector<SpuriousPlane> spurious;   ///< larger than kLeastArea_m2
+    std::vector<SharedPlane> shared;       ///< on two true planes or more
     std::vector<PairMeasure> distances;    ///< parallel found planes (within 5 deg), 0.3 m apart or more
     std::vector<PairMeasure> angles;       ///< all other found planes whose middles are within 6 m
     std::vector<LookAlikes> look_alikes;   ///< of those that count

@@ -157,6 +157,14 @@ std::string judgement_details(const Judgement& judgement, bool all) {
         lines += "  worst outline:\n" + plane_line(*worst);
     lines += worst_pairs(judgement, judgement.distances, "worst distances", "m", 3) +
              worst_pairs(judgement, judgement.angles, "worst angles", "deg", 2);
+    if (!judgement.shared.empty()) lines += "  map planes on several true planes:\n";
+    for (const SharedPlane& plane : judgement.shared) {
+        lines += text("    map plane %d:", plane.id);
+        for (const SharedPlane::Share& share : plane.shares)
+            lines += text("%s %s %.2f m2", &share == plane.shares.data() ? "" : ",",
+                          judgement.planes[share.plane].name.c_str(), share.area);
+        lines += "\n";
+    }
     for (const LookAlikes& pair : judgement.look_alikes)
         lines += text("  two planes, but one by the mapper's rules: %s - %s, %.1f deg, %.0f mm\n",
                       named(judgement, pair.a).c_str(), named(judgement, pair.b).c_str(), pair.angle_deg,

@@ -26,19 +26,46 @@ Eigen::Vector2d on_plane(const Pose& world_from_plane, const Eigen::Vector3d& p_
     return (world_from_plane.inverse(Eigen::Isometry) * p_world).head<2>();
 }
 
-/// For each cell of the raster a number: which part it belongs to, cells within kGap_m of each other being of
-/// one part; 0 for cells that are not set.
+/// Gap between two boxes, cells.
+double gap(const cv::Rect& a, const cv::Rect& b) {
+    const int dx = std::max({0, a.x - (b.x + b.width), b.x - (a.x + a.width)});
+    const int dy = std::max({0, a.y - (b.y + b.height), b.y - (a.y + a.height)});
+    return std::hypot(dx, dy);
+}
+
+/// For each cell of the raster a number: which part it belongs to, parts being as far apart as the paper's
+/// merging rule says: more than kGap_m between their boxes. 0 for cells that are not set.
 cv::Mat1i parts_of(const PlaneRaster& raster) {
-    cv::Mat1b empty(raster.mask.height, raster.mask.width);
-    std::transform(raster.mask.cells.begin(), raster.mask.cells.end(), empty.begin(),
-                   [](std::uint8_t set) { return static_cast<std::uint8_t>(set == 0 ? 1 : 0); });
-    cv::Mat1f apart;
-    cv::distanceTransform(empty, apart, cv::DIST_L2, cv::DIST_MASK_5);
-    cv::Mat1b grown;
-    cv::compare(apart, 0.5 * kGap_m / PlaneRaster::kCell_m, grown, cv::CMP_LE);
-    cv::Mat1i parts;
-    cv::connectedComponents(grown, parts);
-    parts.setTo(0, empty);
+    cv::Mat1b set(raster.mask.height, raster.mask.width);
+    std::copy(raster.mask.cells.begin(), raster.mask.cells.end(), set.begin());
+    cv::Mat1i parts, statistics;
+    cv::Mat1d centroids;
+    const int count = cv::connectedComponentsWithStats(set, parts, statistics, centroids);
+    std::vector<cv::Rect>
+        boxes;              // of part i at i; empty for the background and for parts that went up in another
+    std::vector<int> into;  // the part that each went up in, or itself
+    for (int i = 0; i < count; ++i) {
+        boxes.emplace_back(statistics(i, cv::CC_STAT_LEFT), statistics(i, cv::CC_STAT_TOP),
+                           statistics(i, cv::CC_STAT_WIDTH), statistics(i, cv::CC_STAT_HEIGHT));
+        into.push_back(i);
+    }
+    boxes[0] = {};
+    const auto merge_one = [&] {
+        for (std::size_t i = 1; i < boxes.size(); ++i) {
+            for (std::size_t j = i + 1; j < boxes.size(); ++j) {
+                if (boxes[i].empty() || boxes[j].empty()) continue;
+                if (gap(boxes[i], boxes[j]) * PlaneRaster::kCell_m > kGap_m) continue;
+                boxes[i] |= boxes[j];
+                boxes[j] = {};
+                std::replace(into.begin(), into.end(), static_cast<int>(j), static_cast<int>(i));
+                return true;
+            }
+        }
+        return false;
+    };
+    while (merge_one()) {
+    }
+    for (int& part : parts) part = into[static_cast<std::size_t>(part)];
     return parts;
 }
 
@@ -77,8 +104,7 @@ TruthCollector::TruthCollector(const sim::World& world) {
             const Eigen::Vector2d p = on_plane(group.world_from_plane, corner);
             low = low.cwiseMin(p), high = high.cwiseMax(p);
         }
-        // Room for parts to be joined around a corner.
-        group.visible = PlaneRaster(low, high, static_cast<int>(kGap_m / PlaneRaster::kCell_m));
+        group.visible = PlaneRaster(low, high, 0);
         group.material = group.visible;
         group.surfaces.assign(group.visible.mask.cells.size(), -1);
         for (std::size_t k = 0; k < corners[i].size(); k += 4) {

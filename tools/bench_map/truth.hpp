@@ -29,9 +29,10 @@ struct Sight {
 };
 
 /// Collects the visible surface of each plane of a world. Surfaces on the same plane (within 1 mm and 0.1
-/// deg, same side) are one plane where their visible parts lie within 0.5 m of each other, as the paper's
-/// merging rule has it; parts further apart are planes of their own. (In the simulator's worlds, parts of one
-/// plane in different rooms are further apart, or meet in a doorway.)
+/// deg, same side) are one plane where the boxes around their visible parts (along the sides of the first
+/// rectangle) lie within 0.5 m of each other, as the paper's merging rule has it; parts further apart are
+/// planes of their own. (In the simulator's worlds, parts of one plane in different rooms are further apart,
+/// or meet in a doorway.)
 class TruthCollector {
   public:
     explicit TruthCollector(const sim::World& world);
