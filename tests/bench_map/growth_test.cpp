@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench_map/growth.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+namespace planemap::bench_map {
+namespace {
+
+GrowthPoint point(std::int64_t frames, std::size_t bytes, double frame_ms) {
+    GrowthPoint point;
+    point.frames = frames;
+    point.message_bytes = bytes;
+    point.frame_ms = frame_ms;
+    return point;
+}
+
+TEST(Growth, ComparesRoundsAndThousands) {
+    Growth growth;
+    growth.points = {point(1000, 10, 5), point(2000, 20, 10), point(3000, 25, 12), point(4000, 26, 15)};
+    growth.rounds = {point(1900, 2000, 0), point(3800, 2100, 0)};
+    EXPECT_NEAR(growth.second_round().value(), 0.05, 1e-9);
+    EXPECT_NEAR(growth.cost_ratio().value(), 1.5, 1e-9);
+    EXPECT_THAT(growth_table(growth), testing::HasSubstr("the second round adds 5.0 %"));
+    EXPECT_EQ(to_json("sim:x", growth)["points"].size(), 4u);
+}
+
+TEST(Growth, SaysNothingOfWhatWasNotSeen) {
+    Growth growth;
+    EXPECT_FALSE(growth.second_round());
+    EXPECT_FALSE(growth.cost_ratio());
+    growth.rounds = {point(1900, 2000, 0)};
+    growth.points = {point(1000, 10, 5), point(1900, 20, 10)};
+    EXPECT_FALSE(growth.second_round());
+    EXPECT_FALSE(growth.cost_ratio());
+    EXPECT_TRUE(to_json("sim:x", growth)["cost_ratio"].is_null());
+}
+
+TEST(Growth, NeedsAWalkThatGoesRound) {
+    EXPECT_THROW(frames_a_round("sim:office?visits=5"), std::invalid_argument);
+    EXPECT_THROW(frames_a_round("redkitchen"), std::invalid_argument);
+    const auto slow = frames_a_round("sim:office?width=64&height=48");
+    EXPECT_GT(slow, 300);
+    EXPECT_LT(frames_a_round("sim:office?width=64&height=48&speed=1&turn=90"), slow);
+}
+
+TEST(Growth, NotesTheEnd) {
+    const Growth growth =
+        measure_growth("sim:office?width=160&height=120&frames=12", 10, {}, [](std::int64_t) {});
+    ASSERT_EQ(growth.points.size(), 1u);
+    EXPECT_EQ(growth.points[0].frames, 10);
+    EXPECT_GT(growth.points[0].keyframes, 0);
+    EXPECT_GT(growth.points[0].message_bytes, 0u);
+    EXPECT_GT(growth.points[0].frame_ms, 0);
+    EXPECT_TRUE(growth.rounds.empty());
+}
+
+}  // namespace
+}  // namespace planemap::bench_map

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench_map/growth.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "bench_map/run.hpp"
+#include "messages/convert.hpp"
+#include "run/input.hpp"
+#include "sensor/simulator/simulated_source.hpp"
+
+namespace planemap::bench_map {
+
+namespace {
+
+constexpr std::int64_t kEvery = 1000;  // frames a line
+
+/// CPU time of all modules so far.
+double pipeline_ms(Pipeline& pipeline) {
+    return pipeline.decoder().decode_ms().sum() + pipeline.segmentation().status().work_cpu_ms().sum() +
+           pipeline.odometry().status().work_cpu_ms().sum() + pipeline.graph().status().work_cpu_ms().sum() +
+           pipeline.map().status().work_cpu_ms().sum();
+}
+
+GrowthPoint point_at(std::int64_t frames, Pipeline& pipeline) {
+    const PlaneMapper& mapper = pipeline.map().mapper();
+    GrowthPoint point;
+    point.frames = frames;
+    point.keyframes = static_cast<int>(pipeline.graph().graph().trajectory().keyframes.size());
+    point.planes = mapper.map().planes.size();
+    point.message_bytes = static_cast<std::size_t>(to_message(mapper.map(), 0).getEncodedSize());
+    point.memory_bytes = mapper.memory_bytes();
+    return point;
+}
+
+/// Watches a pipeline as its frames come.
+class Observer {
+  public:
+    Observer(std::int64_t round, Growth& growth) : round_(round), growth_(growth) {}
+
+    void see(std::int64_t frames, Pipeline& pipeline) {
+        const double total_ms = pipeline.map().status().work_cpu_ms().sum();
+        const auto updates = pipeline.map().status().work_cpu_ms().count();
+        if (updates > updates_) map_ms_.add((total_ms - map_total_ms_) / double(updates - updates_));
+        updates_ = updates;
+        map_total_ms_ = total_ms;
+        if (frames > 0 && frames % round_ == 0) growth_.rounds.push_back(point_at(frames, pipeline));
+        if (frames > 0 && frames % kEvery == 0) note(frames, pipeline);
+    }
+    void note(std::int64_t frames, Pipeline& pipeline) {
+        if (frames == frames_) return;
+        GrowthPoint point = point_at(frames, pipeline);
+        const double total_ms = pipeline_ms(pipeline);
+        point.map_ms = map_ms_.median();
+        point.frame_ms = (total_ms - total_ms_) / static_cast<double>(frames - frames_);
+        growth_.points.push_back(point);
+        map_ms_ = {};
+        frames_ = frames;
+        total_ms_ = total_ms;
+    }
+
+  private:
+    std::int64_t round_, frames_ = 0, updates_ = 0;
+    double map_total_ms_ = 0, total_ms_ = 0;
+    Histogram map_ms_;
+    Growth& growth_;
+};
+
+}  // namespace
+
+std::optional<double> Growth::second_round() const {
+    if (rounds.size() < 2) return std::nullopt;
+    const auto first = static_cast<double>(rounds[0].message_bytes);
+    return static_cast<double>(rounds[1].message_bytes) / first - 1;
+}
+
+std::optional<double> Growth::cost_ratio() const {
+    if (points.size() < 3) return std::nullopt;
+    return points.back().frame_ms / points[1].frame_ms;
+}
+
+std::int64_t frames_a_round(const std::string& simulator_name) {
+    const sim::SimulatorOptions options = sim::parse_simulator_name(simulator_name);
+    if (options.visits > 0 || !options.trajectory.empty())
+        throw std::invalid_argument(simulator_name + ": --growth needs a walk that goes round");
+    const sim::SimulatedSource source(options);
+    sim::HandOptions hand;
+    hand.speed_m_s = options.speed_m_s;
+    hand.turn_deg_s = options.turn_deg_s;
+    return std::lround(sim::tour_duration(source.world().tour, hand, options.seed) * options.rate_hz);
+}
+
+Growth measure_growth(const std::string& simulator_name, std::int64_t frames, PipelineOptions options,
+                      const std::function<void(std::int64_t)>& on_frame) {
+    Growth growth;
+    Observer observer(frames_a_round(simulator_name), growth);
+    options.with_octomap = false;
+    Bus bus("memq://");
+    Pipeline pipeline(bus, options);
+    const std::unique_ptr<Input> input = open_input(simulator_name, bus, options.camera);
+    while ((frames == 0 || input->frames() < frames) && input->feed()) {
+        pipeline.settle();
+        observer.see(input->frames(), pipeline);
+        on_frame(input->frames());
+    }
+    pipeline.finish();
+    observer.note(input->frames(), pipeline);
+    return growth;
+}
+
+std::string growth_table(const Growth& growth) {
+    std::string text = "frames  keyframes planes  message B   memory B  map ms/keyframe  all ms/frame\n";
+    char line[160];
+    for (const GrowthPoint& p : growth.points) {
+        std::snprintf(line, sizeof(line), "%6lld %10d %6zu %10zu %10zu %16.2f %13.2f\n",
+                      static_cast<long long>(p.frames), p.keyframes, p.planes, p.message_bytes,
+                      p.memory_bytes, p.map_ms, p.frame_ms);
+        text += line;
+    }
+    for (std::size_t i = 0; i < growth.rounds.size(); ++i) {
+        const GrowthPoint& p = growth.rounds[i];
+        std::snprintf(line, sizeof(line), "round %zu ends at frame %lld: %zu planes, %zu bytes\n", i + 1,
+                      static_cast<long long>(p.frames), p.planes, p.message_bytes);
+        text += line;
+    }
+    if (const auto added = growth.second_round()) {
+        std::snprintf(line, sizeof(line), "the second round adds %.1f %% to the message\n", 100 * *added);
+        text += line;
+    }
+    if (const auto ratio = growth.cost_ratio()) {
+        std::snprintf(line, sizeof(line), "a frame of the last thousand costs %.2f times one of the second\n",
+                      *ratio);
+        text += line;
+    }
+    return text;
+}
+
+nlohmann::ordered_json to_json(const std::string& sequence, const Growth& growth) {
+    nlohmann::ordered_json json{{"sequence", sequence}, {"points", nlohmann::ordered_json::array()}};
+    for (const GrowthPoint& p : growth.points) {
+        json["points"].push_back({{"frames", p.frames},
+                                  {"keyframes", p.keyframes},
+                                  {"planes", p.planes},
+                                  {"message_bytes", p.message_bytes},
+                                  {"memory_bytes", p.memory_bytes},
+                                  {"map_ms", p.map_ms},
+                                  {"frame_ms", p.frame_ms}});
+    }
+    json["second_round_share"] = nullptr;
+    json["cost_ratio"] = nullptr;
+    if (const auto added = growth.second_round()) json["second_round_share"] = *added;
+    if (const auto ratio = growth.cost_ratio()) json["cost_ratio"] = *ratio;
+    return json;
+}
+
+}  // namespace planemap::bench_map

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How a map grows while a camera goes round after round.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "run/pipeline.hpp"
+
+namespace planemap::bench_map {
+
+/// What there is after so many frames.
+struct GrowthPoint {
+    std::int64_t frames = 0;
+    int keyframes = 0;
+    std::size_t planes = 0, message_bytes = 0, memory_bytes = 0;
+    double map_ms = 0;    ///< CPU time of the mapper, a keyframe: median since the point before
+    double frame_ms = 0;  ///< CPU time of all modules, a frame: mean since the point before
+};
+
+struct Growth {
+    std::vector<GrowthPoint> points;  ///< every thousand frames, and the last
+    std::vector<GrowthPoint> rounds;  ///< at the end of each whole round; without times
+    /// Bytes of the message that the second round added, as a share of the first's.
+    std::optional<double> second_round() const;
+    /// Cost of a frame between the last two points, over the cost of one between the first two. The first
+    /// point's own frames are left out: a map begins small.
+    std::optional<double> cost_ratio() const;
+};
+
+/// Frames of one round of a simulated world's tour; throws std::invalid_argument for another input, or a walk
+/// that is no tour.
+std::int64_t frames_a_round(const std::string& simulator_name);
+
+/// Runs the whole pipeline, without OctoMap, over all frames of a simulated world. Calls `on_frame` with the
+/// frames so far.
+Growth measure_growth(const std::string& simulator_name, std::int64_t frames, PipelineOptions options,
+                      const std::function<void(std::int64_t)>& on_frame);
+
+std::string growth_table(const Growth& growth);
+nlohmann::ordered_json to_json(const std::string& sequence, const Growth& growth);
+
+}  // namespace planemap::bench_map

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench_map/plane_raster.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace planemap::bench_map {
+
+PlaneRaster::PlaneRaster(const Eigen::Vector2d& low, const Eigen::Vector2d& high, int margin)
+    : x0(static_cast<int>(std::floor(low.x() / kCell_m)) - margin),
+      y0(static_cast<int>(std::floor(low.y() / kCell_m)) - margin),
+      mask(static_cast<int>(std::ceil(high.x() / kCell_m)) + margin - x0,
+           static_cast<int>(std::ceil(high.y() / kCell_m)) + margin - y0) {}
+
+std::size_t PlaneRaster::count() const {
+    return mask.cells.size() -
+           static_cast<std::size_t>(std::count(mask.cells.begin(), mask.cells.end(), std::uint8_t{0}));
+}
+
+Eigen::Vector2d PlaneRaster::centre() const {
+    Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+    for_each_cell(*this, [&](int x, int y) { sum += cell_centre(x, y); });
+    return sum / static_cast<double>(count());
+}
+
+PlaneRaster rasterised(const Outline& outline) {
+    if (outline.vertex_count() == 0) return {};
+    Eigen::Vector2d low = Eigen::Vector2d::Constant(1e9), high = -low;
+    for (const Ring& ring : outline.rings)
+        for (const Eigen::Vector2d& v : ring) low = low.cwiseMin(v), high = high.cwiseMax(v);
+    PlaneRaster raster(low, high, 0);
+    Outline in_cells = outline;
+    for (Ring& ring : in_cells.rings)
+        for (Eigen::Vector2d& v : ring) v = v / PlaneRaster::kCell_m - Eigen::Vector2d(raster.x0, raster.y0);
+    fill(in_cells, raster.mask);
+    return raster;
+}
+
+PlaneRaster united(const PlaneRaster& a, const PlaneRaster& b) {
+    if (a.mask.cells.empty()) return b;
+    if (b.mask.cells.empty()) return a;
+    PlaneRaster both;
+    both.x0 = std::min(a.x0, b.x0);
+    both.y0 = std::min(a.y0, b.y0);
+    both.mask = Mask(std::max(a.x0 + a.mask.width, b.x0 + b.mask.width) - both.x0,
+                     std::max(a.y0 + a.mask.height, b.y0 + b.mask.height) - both.y0);
+    for (const PlaneRaster* raster : {&a, &b})
+        for_each_cell(*raster, [&](int x, int y) { both.mask.set(x - both.x0, y - both.y0); });
+    return both;
+}
+
+}  // namespace planemap::bench_map

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench_map/run.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "bench_map/true_poses.hpp"
+#include "messages/channels.hpp"
+#include "messages/convert.hpp"
+#include "messages/decode.hpp"
+#include "messages/module_status.hpp"
+#include "run/input.hpp"
+
+namespace planemap::bench_map {
+
+namespace {
+
+MapRun map_run_of(const PlaneMapper& mapper, const Histogram& update_ms, const KeyframeTrajectory& poses) {
+    MapRun run;
+    run.map = mapper.map();
+    run.poses = poses;
+    run.message_bytes = static_cast<std::size_t>(to_message(run.map, 0).getEncodedSize());
+    run.memory_bytes = mapper.memory_bytes();
+    run.update_median_ms = update_ms.median();
+    run.update_p95_ms = update_ms.p95();
+    return run;
+}
+
+/// The map beside an OctoMap at the same poses.
+Coverage coverage_at(const MapRun& run, OctomapBuilder& octomap) {
+    octomap.update(run.poses);
+    octomap.flush();
+    return coverage_of(run.map, octomap.occupied_voxels(), octomap.tree().getResolution());
+}
+
+}  // namespace
+
+SequenceRun run_sequence(const std::string& input_name, const RunOptions& options,
+                         const std::function<void(std::int64_t, Pipeline&)>& on_frame) {
+    SequenceRun run;
+    Bus bus("memq://");
+    Pipeline pipeline(bus, options.pipeline);
+    bus.subscribe(channels::kKeyframe, [&run](const RawMessage& message) {
+        run.keyframes.push_back(from_message(decode<keyframe_t>(message.bytes)));
+        run.keyframes.back().features = {};
+    });
+    const std::unique_ptr<Input> input = open_input(input_name, bus, options.pipeline.camera);
+    on_frame(0, pipeline);
+    while ((options.frames == 0 || input->frames() < options.frames) && input->feed()) {
+        pipeline.settle();
+        on_frame(input->frames(), pipeline);
+    }
+    pipeline.finish();
+    if (run.keyframes.empty()) throw std::runtime_error(input_name + ": no keyframe in it");
+    run.frames = input->frames();
+    run.truth = input->truth();
+
+    const MapOptions& map_options = options.pipeline.map.map;
+    OctomapShell* octomap = pipeline.octomap();
+    MapShell& map = pipeline.map();
+    run.estimated =
+        map_run_of(map.mapper(), map.status().work_cpu_ms(), pipeline.graph().graph().trajectory());
+    run.estimated.rebuild_ms = time_rebuild(run.keyframes, run.estimated.poses, map_options);
+    if (octomap != nullptr) run.estimated.coverage = coverage_at(run.estimated, octomap->builder());
+    if (!options.true_poses || !run.truth) return run;
+    const KeyframeTrajectory poses = at_poses(run.keyframes, *run.truth);
+    run.true_poses = map_at(run.keyframes, poses, map_options);
+    run.true_poses->rebuild_ms = time_rebuild(run.keyframes, poses, map_options);
+    if (octomap != nullptr) run.true_poses->coverage = coverage_at(*run.true_poses, octomap->builder());
+    return run;
+}
+
+MapRun map_at(const std::vector<Keyframe>& keyframes, const KeyframeTrajectory& poses,
+              const MapOptions& options) {
+    PlaneMapper mapper(options);
+    Histogram update_ms;
+    KeyframeTrajectory so_far = poses;
+    so_far.keyframes.clear();
+    for (const KeyframePose& pose : poses.keyframes) {
+        const auto keyframe = std::find_if(keyframes.begin(), keyframes.end(),
+                                           [&](const Keyframe& k) { return k.id == pose.id; });
+        if (keyframe == keyframes.end()) continue;
+        so_far.keyframes.push_back(pose);
+        so_far.utime = pose.utime;
+        mapper.add(*keyframe);
+        const double start_ms = thread_cpu_ms();
+        mapper.update(so_far);
+        update_ms.add(thread_cpu_ms() - start_ms);
+    }
+    return map_run_of(mapper, update_ms, poses);
+}
+
+double time_rebuild(const std::vector<Keyframe>& keyframes, const KeyframeTrajectory& poses,
+                    const MapOptions& options) {
+    constexpr int kTimes = 6;
+    PlaneMapper mapper(options);
+    for (const Keyframe& keyframe : keyframes) mapper.add(keyframe);
+    mapper.update(poses);
+    KeyframeTrajectory moved = poses;
+    Histogram rebuild_ms;
+    for (int i = 0; i < kTimes; ++i) {
+        ++moved.revision;
+        for (KeyframePose& pose : moved.keyframes)
+            pose.world_from_camera.pretranslate(Eigen::Vector3d(i % 2 == 0 ? 0.01 : -0.01, 0, 0));
+        const double start_ms = thread_cpu_ms();
+        mapper.update(moved);
+        rebuild_ms.add(thread_cpu_ms() - start_ms);
+    }
+    return rebuild_ms.median();
+}
+
+}  // namespace planemap::bench_map

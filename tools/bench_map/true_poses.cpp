@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench_map/true_poses.hpp"
+
+#include <Eigen/SVD>
+#include <algorithm>
+
+namespace planemap::bench_map {
+
+namespace {
+
+constexpr std::int64_t kMaxGapUs = 100000;
+
+/// Poses of the keyframes that both know.
+std::vector<std::pair<Pose, Pose>> common(const KeyframeTrajectory& to, const KeyframeTrajectory& from) {
+    std::vector<std::pair<Pose, Pose>> pairs;
+    for (const KeyframePose& a : to.keyframes) {
+        const auto b = std::find_if(from.keyframes.begin(), from.keyframes.end(),
+                                    [&](const KeyframePose& pose) { return pose.id == a.id; });
+        if (b != from.keyframes.end()) pairs.emplace_back(a.world_from_camera, b->world_from_camera);
+    }
+    return pairs;
+}
+
+}  // namespace
+
+std::optional<Pose> pose_at(const Trajectory& trajectory, std::int64_t utime) {
+    const auto after =
+        std::lower_bound(trajectory.begin(), trajectory.end(), utime,
+                         [](const StampedPose& pose, std::int64_t t) { return pose.utime < t; });
+    if (after == trajectory.end()) return std::nullopt;
+    if (after->utime == utime) return after->world_from_camera;
+    if (after == trajectory.begin()) return std::nullopt;
+    const StampedPose &a = *(after - 1), &b = *after;
+    if (b.utime - a.utime > kMaxGapUs) return std::nullopt;
+    return interpolate(a.world_from_camera, b.world_from_camera,
+                       static_cast<double>(utime - a.utime) / static_cast<double>(b.utime - a.utime));
+}
+
+KeyframeTrajectory at_poses(const std::vector<Keyframe>& keyframes, const Trajectory& trajectory) {
+    KeyframeTrajectory poses;
+    for (const Keyframe& keyframe : keyframes) {
+        const std::optional<Pose> pose = pose_at(trajectory, keyframe.utime);
+        if (!pose) continue;
+        poses.keyframes.push_back({keyframe.id, keyframe.utime, *pose});
+        poses.utime = keyframe.utime;
+    }
+    return poses;
+}
+
+std::optional<Pose> alignment(const KeyframeTrajectory& to, const KeyframeTrajectory& from) {
+    const std::vector<std::pair<Pose, Pose>> pairs = common(to, from);
+    if (pairs.empty()) return std::nullopt;
+    Eigen::Vector3d to_mean = Eigen::Vector3d::Zero(), from_mean = Eigen::Vector3d::Zero();
+    for (const auto& [a, b] : pairs) to_mean += a.translation(), from_mean += b.translation();
+    to_mean /= static_cast<double>(pairs.size());
+    from_mean /= static_cast<double>(pairs.size());
+    Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+    for (const auto& [a, b] : pairs) {
+        sum += (a.translation() - to_mean) * (b.translation() - from_mean).transpose();
+        sum += a.linear() * b.linear().transpose();
+    }
+    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    Eigen::Matrix3d sign = Eigen::Matrix3d::Identity();
+    sign(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
+    Pose to_from_from = Pose::Identity();
+    to_from_from.linear() = svd.matrixU() * sign * svd.matrixV().transpose();
+    to_from_from.translation() = to_mean - to_from_from.linear() * from_mean;
+    return to_from_from;
+}
+
+}  // namespace planemap::bench_map

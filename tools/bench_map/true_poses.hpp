@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+
+#include "core/keyframe.hpp"
+#include "core/trajectory.hpp"
+
+namespace planemap::bench_map {
+
+/// Pose at a time, interpolated between poses at most 0.1 s apart; nothing where there are none.
+std::optional<Pose> pose_at(const Trajectory& trajectory, std::int64_t utime);
+
+/// The keyframes' poses (ids and utimes are read) from a trajectory of the colour camera, at
+/// their utimes by pose_at(); keyframes without one are left out.
+KeyframeTrajectory at_poses(const std::vector<Keyframe>& keyframes, const Trajectory& trajectory);
+
+/// The rigid motion that lays one trajectory's keyframes on another's with least squares over their positions
+/// (metres) and rotations (a radian counts about as a metre), over the ids that both have. Nothing without
+/// any.
+std::optional<Pose> alignment(const KeyframeTrajectory& to, const KeyframeTrajectory& from);
+
+}  // namespace planemap::bench_map

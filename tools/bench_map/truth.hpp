@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The planes that a map of a simulated world should hold.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bench_map/plane_raster.hpp"
+#include "core/plane.hpp"
+#include "sensor/simulator/renderer.hpp"
+
+namespace planemap::bench_map {
+
+/// A plane as far as the camera has seen it.
+struct TruePlane {
+    std::string name;  ///< of the surface that most of it is; "+2" counts others in the same plane
+    Plane plane;       ///< world frame; the normal points to the side that can be seen
+    Pose world_from_plane = Pose::Identity();  ///< z is the normal; frame of the raster
+    PlaneRaster visible;                       ///< at least one cell
+
+    /// Middle of the visible surface, world frame.
+    Eigen::Vector3d centre() const;
+};
+
+/// What of a view counts as seen.
+struct Sight {
+    double min_m = 0.5, max_m = 4.0;  ///< depth along the optical axis
+    double max_angle_deg = 76;        ///< between ray and normal
+};
+
+/// Collects the visible surface of each plane of a world. Surfaces on the same plane (within 1 mm and 0.1
+/// deg, same side) are one plane where the boxes around their visible parts (along the sides of the first
+/// rectangle) lie within 0.5 m of each other, as the paper's merging rule has it; parts further apart are
+/// planes of their own. (In the simulator's worlds, parts of one plane in different rooms are further apart,
+/// or meet in a doorway.)
+class TruthCollector {
+  public:
+    explicit TruthCollector(const sim::World& world);
+
+    /// Adds what one exact view shows. Each cell of a plane is looked up in the view, so that no pixel is too
+    /// small or too large for the raster.
+    void add(const sim::View& view, const Sight& sight);
+
+    /// The planes seen so far, by plane and then from the largest part to the smallest.
+    std::vector<TruePlane> planes() const;
+
+  private:
+    struct Group {
+        Plane plane;
+        Pose world_from_plane;
+        PlaneRaster material, visible;       ///< of the same size
+        std::vector<std::int16_t> surfaces;  ///< of each visible cell
+    };
+
+    void look(Group& group, std::int16_t index, const sim::View& view, const Sight& sight) const;
+
+    std::vector<std::string> surface_names_;
+    std::vector<std::int16_t> surface_of_rectangle_, group_of_rectangle_;
+    std::vector<Group> groups_;
+};
+
+}  // namespace planemap::bench_map
