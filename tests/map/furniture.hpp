@@ -4,9 +4,9 @@
 
 #include <cmath>
 #include <numbers>
-#include <string>
 #include <vector>
 
+#include "core/plane_map.hpp"
 #include "map/scene.hpp"
 
 namespace planemap::scene {
