@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <numbers>
 
 #include "map/triangulation.hpp"
 
@@ -63,15 +64,24 @@ Eigen::Vector3d up_of(const PlaneMap& map, const Trajectory& trajectory) {
 
 Eigen::Matrix3d level_from_world(const PlaneMap& map, const Eigen::Vector3d& up) {
     const Eigen::Matrix3d axes = plane_axes(up, Eigen::Vector3d::UnitX());
-    // Directions of walls count modulo a right angle: their angles times four are averaged.
-    Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+    std::vector<Eigen::Vector2d>
+        walls;  // area, at four times the angle: directions count modulo a right angle
     for (const MapPlane* plane : drawable_planes(map)) {
         const Eigen::Vector3d n = axes.transpose() * plane->normal.cast<double>();
-        if (std::abs(n.z()) > 0.3) continue;
         const double angle = 4 * std::atan2(n.y(), n.x());
-        sum += plane->area * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+        if (std::abs(n.z()) < 0.3)
+            walls.push_back(plane->area * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
     }
-    const double turn = sum.norm() > 0 ? std::atan2(sum.y(), sum.x()) / 4 : 0;
+    // The direction with the most area within 10 deg of it.
+    Eigen::Vector2d most(0, 0);
+    for (const Eigen::Vector2d& wall : walls) {
+        Eigen::Vector2d sum(0, 0);
+        for (const Eigen::Vector2d& other : walls)
+            if (other.dot(wall) > std::cos(40 * std::numbers::pi / 180) * other.norm() * wall.norm())
+                sum += other;
+        if (sum.norm() > most.norm()) most = sum;
+    }
+    const double turn = std::atan2(most.y(), most.x()) / 4;
     return Eigen::AngleAxisd(-turn, Eigen::Vector3d::UnitZ()) * axes.transpose();
 }
 

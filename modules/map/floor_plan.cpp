@@ -13,6 +13,11 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Part = std::vector<Ring>;  ///< a border and its holes
 
+/// GDAL and QGIS take coordinates without a system for degrees; they read this as a plane with metres.
+constexpr const char* kFrame =
+    "ENGCRS[\"planemap level frame\",EDATUM[\"start of the map\"],CS[Cartesian,2],AXIS[\"x\",east],"
+    "AXIS[\"y\",north],LENGTHUNIT[\"metre\",1]]";
+
 double rounded(double metres) {
     return std::round(1e3 * metres) / 1e3 + 0.0;  // no negative zero
 }
@@ -147,12 +152,13 @@ std::string floor_plan_geojson(const PlaneMap& map, const Trajectory& trajectory
     }
     const std::string heights =
         floor != nullptr ? "plane " + std::to_string(floor->id) + " (floor)" : "the world's origin";
-    std::string text = "{\"type\": \"FeatureCollection\",\n \"crs\": null,\n \"frame\": " +
-                       Json(
-                           "local, metres, not degrees: x and y level, z up; position = "
-                           "rotation_level_from_world * p_world; heights are above " +
-                           heights)
-                           .dump() +
+    const Json crs = {{"type", "name"}, {"properties", {{"name", kFrame}}}};
+    const std::string frame =
+        "local, metres, not degrees: x and y level, z up; position = rotation_level_from_world * p_world; "
+        "heights are above " +
+        heights;
+    std::string text = "{\"type\": \"FeatureCollection\",\n \"crs\": " + crs.dump() +
+                       ",\n \"frame\": " + Json(frame).dump() +
                        ",\n \"rotation_level_from_world\": " + rows.dump() + ",\n \"features\": [";
     for (std::size_t i = 0; i < features.size(); ++i)
         text += (i == 0 ? "\n  " : ",\n  ") + features[i].dump();

@@ -33,7 +33,9 @@ TEST(LevelFromWorld, TurnsUpToZAndWallsToTheAxes) {
     test::Random random(1);
     for (int i = 0; i < 10; ++i) {
         const Pose world_from_room = random.pose();
-        const PlaneMap map = scene::map_of(scene::walls(3, 2), world_from_room);
+        std::vector<scene::Rectangle> planes = scene::walls(3, 2);
+        planes.push_back(scene::upright(2, 2, 0, 0.4, 3, 2.5));  // across a corner: does not count
+        const PlaneMap map = scene::map_of(planes, world_from_room);
         const Eigen::Matrix3d level = level_from_world(map, world_from_room.linear().col(2));
         EXPECT_TRUE((level * level.transpose()).isIdentity(1e-9));
         EXPECT_NEAR(level.determinant(), 1, 1e-9);

@@ -67,6 +67,7 @@ TEST(FloorPlan, HasAreasLengthsAndHeightsInAnyWorld) {
         const Pose world_from_room = random.pose();
         const Json plan = Json::parse(floor_plan_geojson(room(world_from_room), walk(world_from_room)));
         EXPECT_EQ(plan["type"], "FeatureCollection");
+        EXPECT_EQ(plan["crs"]["type"], "name");
         ASSERT_EQ(plan["features"].size(), 7u) << "no ceiling, but the trajectory";
         const Json& floor = feature(plan, 4);
         EXPECT_EQ(floor["properties"]["label"], "floor");
