@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "map/export.hpp"
+#include "map/export_parts.hpp"
 
 namespace planemap {
 
@@ -19,10 +20,7 @@ constexpr double kPageWidth_px = 1200, kPageHeight_px = 800, kMargin_px = 60;
 constexpr double kNumberedArea_m2 = 0.15;  ///< smaller planes are drawn without their number
 
 std::string text(double value) {
-    std::array<char, 32> buffer;
-    const auto end =
-        std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::fixed, 1);
-    return {buffer.data(), end.ptr};
+    return fixed(value, 1);
 }
 
 std::string move_to(const Eigen::Vector2d& p) {
@@ -40,15 +38,10 @@ std::string css(const Rgb& color, double shade = 1) {
     return std::string("rgb(") + channel(color.r) + "," + channel(color.g) + "," + channel(color.b) + ")";
 }
 
-Polygon3 polygon_of(const MapPlane& plane) {
-    Polygon3 rings;
-    const Pose world_from_plane = plane.world_from_plane();
-    for (const Ring& ring : plane.outline.rings().rings) {
-        rings.emplace_back();
-        for (const Eigen::Vector2d& v : ring)
-            rings.back().push_back(world_from_plane * Eigen::Vector3d(v.x(), v.y(), 0));
-    }
-    return rings;
+/// What a viewer shows when the mouse rests on the plane.
+std::string tooltip(const MapPlane& plane) {
+    return "<title>plane " + std::to_string(plane.id) + ", " + label_name(plane.label) + ", " +
+           fixed(static_cast<double>(plane.area), 2) + " m²</title>";
 }
 
 template <typename Project>
@@ -88,11 +81,30 @@ std::string page(const std::string& title, const std::string& body) {
            size + "\" fill=\"white\"/>\n" + body + "</svg>\n";
 }
 
+/// The colours of the labels: of the numbers' discs, and in the legend.
+const char* label_color(PlaneLabel label) {
+    switch (label) {
+        case PlaneLabel::kFloor:
+            return "#f5deb3";
+        case PlaneLabel::kCeiling:
+            return "#e6e6fa";
+        case PlaneLabel::kWall:
+            return "#ffffff";
+        case PlaneLabel::kHorizontal:
+            return "#b7e4c7";
+        case PlaneLabel::kOther:
+            return "#ffc9c9";
+        case PlaneLabel::kUnknown:
+            break;
+    }
+    return "#dddddd";
+}
+
 /// Puts numbers on a page so that they do not cover each other.
 class Numbers {
   public:
-    std::string place(int id, const Eigen::Vector2d& wanted) {
-        const std::string number = std::to_string(id);
+    std::string place(const MapPlane& plane, const Eigen::Vector2d& wanted) {
+        const std::string number = std::to_string(plane.id);
         const double radius = 6.0 + 3.0 * static_cast<double>(number.size());
         Eigen::Vector2d at = wanted;
         for (int step = 0; step < 60 && covers_another(at, radius); ++step) {
@@ -106,9 +118,9 @@ class Numbers {
                 "<path d=\"" + move_to(wanted) + line_to(at) + "\" stroke=\"#555\" stroke-width=\"0.7\"/>\n";
         }
         return svg + "<circle cx=\"" + text(at.x()) + "\" cy=\"" + text(at.y()) + "\" r=\"" + text(radius) +
-               "\" fill=\"white\" fill-opacity=\"0.85\" stroke=\"#555\" stroke-width=\"0.7\"/><text x=\"" +
-               text(at.x()) + "\" y=\"" + text(at.y() + 4.5) + "\" text-anchor=\"middle\">" + number +
-               "</text>\n";
+               "\" fill=\"" + label_color(plane.label) +
+               "\" fill-opacity=\"0.85\" stroke=\"#555\" stroke-width=\"0.7\"/><text x=\"" + text(at.x()) +
+               "\" y=\"" + text(at.y() + 4.5) + "\" text-anchor=\"middle\">" + number + "</text>\n";
     }
 
   private:
@@ -163,60 +175,35 @@ std::string scale_bar(double pixels_per_metre) {
            text(y - 6) + "\" text-anchor=\"middle\">" + std::string(buffer.data(), to) + " m</text>\n";
 }
 
-/// World to a level frame whose z is up and whose x runs along most walls.
-Eigen::Matrix3d level_from_world(const PlaneMap& map, const Eigen::Vector3d& up) {
-    const Eigen::Matrix3d axes = plane_axes(up, Eigen::Vector3d::UnitX());
-    // Directions of walls count modulo a right angle: their angles times four are averaged.
-    Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-    for (const MapPlane& plane : map.planes) {
-        const Eigen::Vector3d n = axes.transpose() * plane.normal.cast<double>();
-        if (std::abs(n.z()) > 0.3) continue;
-        const double angle = 4 * std::atan2(n.y(), n.x());
-        sum += plane.area * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+/// The labels of the planes that are numbered, each with its colour.
+std::string legend(const std::vector<const MapPlane*>& numbered) {
+    std::string svg;
+    double y = kMargin_px / 2;
+    for (const PlaneLabel label : {PlaneLabel::kFloor, PlaneLabel::kCeiling, PlaneLabel::kWall,
+                                   PlaneLabel::kHorizontal, PlaneLabel::kOther, PlaneLabel::kUnknown}) {
+        const auto count = std::count_if(numbered.begin(), numbered.end(),
+                                         [&](const MapPlane* plane) { return plane->label == label; });
+        if (count == 0) continue;
+        svg += "<circle cx=\"20\" cy=\"" + text(y) + "\" r=\"8\" fill=\"" + label_color(label) +
+               "\" stroke=\"#555\" stroke-width=\"0.7\"/><text x=\"34\" y=\"" + text(y + 4.5) + "\">" +
+               label_name(label) + " (" + std::to_string(count) + ")</text>\n";
+        y += 22;
     }
-    const double turn = sum.norm() > 0 ? std::atan2(sum.y(), sum.x()) / 4 : 0;
-    return Eigen::AngleAxisd(-turn, Eigen::Vector3d::UnitZ()) * axes.transpose();
-}
-
-/// A wall seen from above: each outer ring as the line it covers.
-template <typename Project>
-std::string wall_lines(const Polygon3& rings, const Eigen::Vector3d& along, const Project& project) {
-    std::string d;
-    for (const auto& ring : rings) {
-        const auto less = [&](auto& a, auto& b) { return along.dot(a) < along.dot(b); };
-        const auto [from, to] = std::minmax_element(ring.begin(), ring.end(), less);
-        d += move_to(project(*from)) + line_to(project(*to));
-    }
-    return d;
+    return svg;
 }
 
 }  // namespace
 
-Eigen::Vector3d guess_up(const PlaneMap& map, const Trajectory& trajectory) {
-    Eigen::Vector3d held = Eigen::Vector3d::Zero();
-    for (const StampedPose& pose : trajectory) held -= pose.world_from_camera.linear().col(1);
-    held = held.norm() > 1e-6 ? held.normalized().eval() : Eigen::Vector3d(0, -1, 0);
-    const MapPlane* best = nullptr;
-    for (const MapPlane& plane : map.planes) {
-        const bool level = std::abs(plane.normal.cast<double>().dot(held)) > std::cos(std::numbers::pi / 6);
-        if (level && (best == nullptr || plane.area > best->area)) best = &plane;
-    }
-    if (best == nullptr) return held;
-    const Eigen::Vector3d normal = best->normal.cast<double>();
-    return normal.dot(held) > 0 ? normal : (-normal).eval();
-}
-
-std::string overhead_svg(const PlaneMap& map, const Trajectory& trajectory,
-                         std::optional<Eigen::Vector3d> up) {
-    const Eigen::Matrix3d level = level_from_world(map, up.value_or(guess_up(map, trajectory)).normalized());
+std::string overhead_svg(const PlaneMap& map, const Trajectory& trajectory) {
+    const Eigen::Matrix3d level = level_from_world(map, up_of(map, trajectory));
     const auto height = [&](const MapPlane* plane) { return level.row(2).dot(plane->center.cast<double>()); };
-    std::vector<const MapPlane*> surfaces, walls;
+    std::vector<const MapPlane*> surfaces, walls, numbered;
     std::vector<Eigen::Vector2d> extent;
-    for (const MapPlane& plane : map.planes) {
-        const double upward = level.row(2).dot(plane.normal.cast<double>());
+    for (const MapPlane* plane : drawable_planes(map)) {
+        const double upward = level.row(2).dot(plane->normal.cast<double>());
         if (upward < -0.35) continue;
-        (upward > 0.35 ? surfaces : walls).push_back(&plane);
-        for (const auto& ring : polygon_of(plane))
+        (upward > 0.35 ? surfaces : walls).push_back(plane);
+        for (const auto& ring : world_rings(*plane))
             for (const auto& p : ring) extent.push_back((level * p).head<2>());
     }
     for (const StampedPose& pose : trajectory)
@@ -230,24 +217,25 @@ std::string overhead_svg(const PlaneMap& map, const Trajectory& trajectory,
     Numbers numbers;
     for (const MapPlane* plane : surfaces) {
         const Rgb color = plane_color(plane->id);
-        shapes += "<path d=\"" + path(polygon_of(*plane), project) + "\" fill-rule=\"evenodd\" fill=\"" +
+        shapes += "<path d=\"" + path(world_rings(*plane), project) + "\" fill-rule=\"evenodd\" fill=\"" +
                   css(color) + "\" fill-opacity=\"0.55\" stroke=\"" + css(color, 0.6) +
-                  "\" stroke-width=\"0.8\"/>\n";
+                  "\" stroke-width=\"0.8\">" + tooltip(*plane) + "</path>\n";
     }
     for (const MapPlane* plane : walls) {
-        const Eigen::Vector3d along = level.row(2).transpose().cross(plane->normal.cast<double>());
-        shapes += "<path d=\"" + wall_lines(polygon_of(*plane), along, project) +
-                  "\" fill=\"none\" stroke=\"" + css(plane_color(plane->id), 0.75) +
-                  "\" stroke-width=\"4\"/>\n";
+        std::string d;
+        for (const auto& [from, to] : footprint(*plane, level)) d += move_to(fit(from)) + line_to(fit(to));
+        shapes += "<path d=\"" + d + "\" fill=\"none\" stroke=\"" + css(plane_color(plane->id), 0.75) +
+                  "\" stroke-width=\"4\">" + tooltip(*plane) + "</path>\n";
     }
     for (const auto* group : {&walls, &surfaces}) {
         for (const MapPlane* plane : *group) {
             if (plane->area < kNumberedArea_m2) continue;
-            labels += numbers.place(plane->id, project(plane->center.cast<double>()));
+            labels += numbers.place(*plane, project(plane->center.cast<double>()));
+            numbered.push_back(plane);
         }
     }
-    return page("Planes seen from above",
-                shapes + trajectory_line(trajectory, project) + labels + scale_bar(fit.scale()));
+    return page("Planes seen from above", shapes + trajectory_line(trajectory, project) + labels +
+                                              scale_bar(fit.scale()) + legend(numbered));
 }
 
 namespace {
@@ -278,15 +266,15 @@ View looking_from(double azimuth, const Eigen::Matrix3d& level, const Eigen::Vec
 }
 
 /// The corner view that shows the most area.
-View best_view(const PlaneMap& map, const Eigen::Matrix3d& level) {
+View best_view(const std::vector<const MapPlane*>& planes, const Eigen::Matrix3d& level) {
     Eigen::Vector3d low = Eigen::Vector3d::Constant(1e300), high = -low;
-    for (const MapPlane& plane : map.planes) {
-        for (const Eigen::Vector3d& corner : plane.box().face()) {
+    for (const MapPlane* plane : planes) {
+        for (const Eigen::Vector3d& corner : plane->box().face()) {
             low = low.cwiseMin(corner);
             high = high.cwiseMax(corner);
         }
     }
-    if (map.planes.empty()) low = high = Eigen::Vector3d::Zero();
+    if (planes.empty()) low = high = Eigen::Vector3d::Zero();
     const Eigen::Vector3d centre = 0.5 * (low + high);
     const double radius = std::max(0.5, 0.5 * (high - low).norm());
     View best;
@@ -294,9 +282,9 @@ View best_view(const PlaneMap& map, const Eigen::Matrix3d& level) {
     for (int i = 0; i < 8; ++i) {
         const View view = looking_from((i + 0.3) * std::numbers::pi / 4, level, centre, radius);
         double area = 0;
-        for (const MapPlane& plane : map.planes) {
-            const Eigen::Vector3d towards = view.eye - plane.center.cast<double>();
-            area += plane.area * std::max(0.0, plane.normal.cast<double>().dot(towards.normalized()));
+        for (const MapPlane* plane : planes) {
+            const Eigen::Vector3d towards = view.eye - plane->center.cast<double>();
+            area += plane->area * std::max(0.0, plane->normal.cast<double>().dot(towards.normalized()));
         }
         if (area > best_area) {
             best = view;
@@ -361,16 +349,16 @@ std::vector<Drawn> painters_order(std::vector<Drawn> planes, const Eigen::Vector
 
 }  // namespace
 
-std::string perspective_svg(const PlaneMap& map, const Trajectory& trajectory,
-                            std::optional<Eigen::Vector3d> up) {
-    const Eigen::Matrix3d level = level_from_world(map, up.value_or(guess_up(map, trajectory)).normalized());
-    const View view = best_view(map, level);
+std::string perspective_svg(const PlaneMap& map, const Trajectory& trajectory) {
+    const Eigen::Matrix3d level = level_from_world(map, up_of(map, trajectory));
+    const std::vector<const MapPlane*> planes = drawable_planes(map);
+    const View view = best_view(planes, level);
     std::vector<Eigen::Vector2d> extent;
     std::vector<const MapPlane*> visible;
-    for (const MapPlane& plane : map.planes) {
-        if (!view.is_in_front_of(plane.plane())) continue;
-        visible.push_back(&plane);
-        for (const auto& ring : polygon_of(plane))
+    for (const MapPlane* plane : planes) {
+        if (!view.is_in_front_of(plane->plane())) continue;
+        visible.push_back(plane);
+        for (const auto& ring : world_rings(*plane))
             for (const auto& p : ring) extent.push_back(view(p));
     }
     const Fit fit(extent);
@@ -378,7 +366,7 @@ std::string perspective_svg(const PlaneMap& map, const Trajectory& trajectory,
 
     std::vector<Drawn> drawn;
     for (const MapPlane* plane : visible) {
-        Drawn d{plane, polygon_of(*plane), Eigen::Vector2d::Constant(1e300),
+        Drawn d{plane, world_rings(*plane), Eigen::Vector2d::Constant(1e300),
                 Eigen::Vector2d::Constant(-1e300), (plane->center.cast<double>() - view.eye).norm()};
         for (const auto& ring : d.rings) {
             for (const auto& p : ring) {
@@ -400,7 +388,7 @@ std::string perspective_svg(const PlaneMap& map, const Trajectory& trajectory,
         const double shade = 0.72 + 0.33 * std::abs(light.dot(d.plane->normal.cast<double>()));
         body += "<path d=\"" + path(d.rings, project) + "\" fill-rule=\"evenodd\" fill=\"" +
                 css(color, shade) + "\" stroke=\"" + css(color, 0.6) +
-                "\" stroke-width=\"0.8\" stroke-linejoin=\"round\"/>\n";
+                "\" stroke-width=\"0.8\" stroke-linejoin=\"round\">" + tooltip(*d.plane) + "</path>\n";
         painted.push_back(d.plane->id);
         // A line belongs to the nearer of its planes: what is painted later covers it.
         for (const IntersectionLine& line : map.lines) {

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "map/triangulation.hpp"
+#include "map/export_parts.hpp"
 
 namespace planemap {
 
@@ -90,6 +90,7 @@ std::string planes_json(const PlaneMap& map, const Sightings& sightings) {
         "from\",\n";
     text += " \"utime\": " + std::to_string(map.utime) + ",\n \"revision\": " + std::to_string(map.revision) +
             ",\n";
+    text += " \"up\": " + (map.up.isZero() ? Json() : vector(map.up.cast<double>(), 1e9)).dump() + ",\n";
     text +=
         " \"planes\": " + lines_of(map.planes, [&](auto& plane) { return plane_json(plane, sightings); }) +
         ",\n";
@@ -105,28 +106,29 @@ std::string planes_json(const PlaneMap& map, const Sightings& sightings) {
 }
 
 std::string planes_ply(const PlaneMap& map) {
-    std::string vertices, faces;
-    int vertex_count = 0, face_count = 0;
-    for (const MapPlane& plane : map.planes) {
-        const PlanarRegion region = plane.region();
-        const Triangulation triangulation = triangulate(region.outline);
-        const Rgb color = plane_color(plane.id);
-        for (const Eigen::Vector2d& v : triangulation.vertices) {
-            const Eigen::Vector3d p = region.box.frame_from_box * Eigen::Vector3d(v.x(), v.y(), 0);
-            for (const double value : {p.x(), p.y(), p.z()}) put(vertices, static_cast<float>(value));
-            for (int i = 0; i < 3; ++i) put(vertices, static_cast<float>(region.plane.normal[i]));
+    std::string vertices, faces, comments;
+    std::size_t vertex_count = 0, face_count = 0;
+    for (const MapPlane* plane : drawable_planes(map)) {
+        const PlaneMesh mesh = mesh_of(*plane);
+        const Eigen::Vector3f normal = plane->normal.normalized();
+        const Rgb color = plane_color(plane->id);
+        for (const Eigen::Vector3f& v : mesh.vertices) {
+            for (const float value : {v.x(), v.y(), v.z(), normal.x(), normal.y(), normal.z()})
+                put(vertices, value);
             for (const std::uint8_t value : {color.r, color.g, color.b}) put(vertices, value);
         }
-        for (const auto& triangle : triangulation.triangles) {
+        for (const auto& triangle : mesh.triangles) {
             put(faces, std::uint8_t{3});
-            for (const int index : triangle) put(faces, static_cast<std::int32_t>(vertex_count + index));
+            for (const int i : triangle)
+                put(faces, static_cast<std::int32_t>(vertex_count) + static_cast<std::int32_t>(i));
         }
-        vertex_count += static_cast<int>(triangulation.vertices.size());
-        face_count += static_cast<int>(triangulation.triangles.size());
+        comments += "comment plane " + std::to_string(plane->id) + " " + label_name(plane->label) + ", " +
+                    std::to_string(mesh.triangles.size()) + " faces\n";
+        vertex_count += mesh.vertices.size();
+        face_count += mesh.triangles.size();
     }
-    return "ply\nformat binary_little_endian 1.0\ncomment planemap: planes of a map, metres\nelement "
-           "vertex " +
-           std::to_string(vertex_count) +
+    return "ply\nformat binary_little_endian 1.0\ncomment planemap: planes of a map, metres\n" + comments +
+           "element vertex " + std::to_string(vertex_count) +
            "\nproperty float x\nproperty float y\nproperty float z\nproperty float nx\nproperty float ny\n"
            "property float nz\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nelement face " +
            std::to_string(face_count) + "\nproperty list uchar int vertex_indices\nend_header\n" + vertices +

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,29 +18,45 @@ Rgb plane_color(int id);
 /// Ids of the keyframes that saw each plane, by the plane's id; both ascending.
 using Sightings = std::map<int, std::vector<int>>;
 
-/// JSON: planes (id, label, normal, d, inliers, rms, box corners, area, outline rings, keyframes),
+/// JSON: up, planes (id, label, normal, d, inliers, rms, box corners, area, outline rings, keyframes),
 /// intersection lines and points. World frame, metres; values are rounded to a micrometre (normals to 1e-9).
-/// Values that are not finite become null.
+/// Values that are not finite become null, and so does up when it is not known.
 std::string planes_json(const PlaneMap& map, const Sightings& sightings = {});
 
+// All others leave out planes that are not finite or have no outline.
+
 /// Binary little-endian PLY: each outline as triangles with the plane's colour and normal at its vertices.
-/// World frame, metres.
+/// Comments tell ids, labels and numbers of faces in their order. World frame, metres.
 std::string planes_ply(const PlaneMap& map);
 
-/// Which way is up in the world, unit vector: the normal of the largest plane that is level within 30 deg
-/// with how the camera was held (its image rows pointing down, on average); without such a plane, the
-/// camera's average up; without a trajectory, the first camera's up (0, -1, 0).
-Eigen::Vector3d guess_up(const PlaneMap& map, const Trajectory& trajectory);
+/// Wavefront OBJ: an object a plane, named plane_<id>_<label>, of triangles with the plane's normal; its
+/// material plane_<id> is in the MTL file of planes_mtl(), which goes beside it under the given name. World
+/// frame, metres, rounded to 0.01 mm.
+std::string planes_obj(const PlaneMap& map, const std::string& mtl_file = "planes.mtl");
+std::string planes_mtl(const PlaneMap& map);
+
+/// glTF 2.0 in its binary form (.glb), which is one file, opens in viewers and browsers without another, and
+/// is smaller than JSON with the buffers inside. A node with a mesh a plane, named plane_<id>_<label>, id,
+/// label and area in its extras, its colour as a double-sided material. Vertices are in the world frame,
+/// metres; the root node turns it so that y is up and most walls run along x and z.
+std::string planes_glb(const PlaneMap& map);
+
+/// GeoJSON of the floor plan: floors and horizontal surfaces as polygons with holes, walls as lines, each
+/// with label, height range and area, and the trajectory as a line. Coordinates are not degrees but metres in
+/// a local level frame, x along most walls; the file says so and how the world is turned into it. Heights
+/// are above the largest floor, without one above the world's origin. Rounded to a millimetre. Planes whose
+/// label is another, or unknown, are left out.
+std::string floor_plan_geojson(const PlaneMap& map, const Trajectory& trajectory);
 
 /// SVG of the planes seen from above with their ids, walls as lines, the trajectory and a scale bar (the
 /// paper's Fig. 4, left). The page is turned so that most walls run along its edges. Planes that face down
-/// (ceilings) are left out.
-std::string overhead_svg(const PlaneMap& map, const Trajectory& trajectory,
-                         std::optional<Eigen::Vector3d> up = std::nullopt);
+/// (ceilings) are left out. The discs around the ids tell the labels, and so do tooltips. Up is map.up; while
+/// that is not known, how the camera was held on average.
+std::string overhead_svg(const PlaneMap& map, const Trajectory& trajectory);
 
 /// SVG of the planes in perspective from above a corner, shaded, with intersection lines and points and the
-/// trajectory. Planes that face away from the viewer are left out, so that one looks into the rooms.
-std::string perspective_svg(const PlaneMap& map, const Trajectory& trajectory,
-                            std::optional<Eigen::Vector3d> up = std::nullopt);
+/// trajectory. Planes that face away from the viewer are left out, so that one looks into the rooms. Ids and
+/// labels show as tooltips. Up is as for overhead_svg().
+std::string perspective_svg(const PlaneMap& map, const Trajectory& trajectory);
 
 }  // namespace planemap

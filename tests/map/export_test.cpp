@@ -9,46 +9,15 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "map/scene.hpp"
+#include "map/corner.hpp"
 
 namespace planemap {
 namespace {
 
-using scene::facing;
-using scene::Rectangle;
+using scene::corner;
+using scene::walk;
 using ::testing::HasSubstr;
 using ::testing::Not;
-
-MapPlane plane_of(int id, const Rectangle& rectangle) {
-    return {id, scene::region_of(rectangle, Pose::Identity()), 2};
-}
-
-PlaneMap corner() {
-    PlaneMap map;
-    map.utime = 42;
-    map.planes = {
-        plane_of(1, {facing({0, 0, 0}, {0, 0, 1}, {1, 0, 0}), 1, 1, {}}),
-        plane_of(
-            3,
-            {facing({1, 0, 1}, {-1, 0, 0}, {0, 1, 0}), 1, 1, {scene::rectangle_ring(-0.3, -0.3, 0.2, 0.4)}}),
-        plane_of(12, {facing({0, 0, 2}, {0, 0, -1}, {1, 0, 0}), 1, 1, {}})};
-    map.planes[0].label = PlaneLabel::kFloor;
-    map.lines = {{1, 3, {1, -1, 0}, {1, 1, 0}}};
-    map.points = {{{1, 3, 12}, {1, 1, 0}}};
-    return map;
-}
-
-Trajectory walk() {
-    Trajectory trajectory;
-    for (int i = 0; i < 5; ++i) {
-        // Looking along world y, held upright: image rows point down, along -z.
-        Pose pose = Pose::Identity();
-        pose.linear() << 1, 0, 0, 0, 0, 1, 0, -1, 0;
-        pose.translation() = Eigen::Vector3d(-0.5 + 0.2 * i, 0, 1);
-        trajectory.push_back({i, pose});
-    }
-    return trajectory;
-}
 
 struct Ply {
     std::vector<Eigen::Vector3f> vertices, normals;
@@ -88,11 +57,12 @@ TEST(PlanesJson, SaysWhatTheMapSays) {
     const PlaneMap map = corner();
     const auto json = nlohmann::json::parse(planes_json(map, {{3, {0, 3}}}));
     EXPECT_EQ(json["utime"], 42);
+    EXPECT_EQ(json["up"], nlohmann::json::parse("[0.0, 0.0, 1.0]"));
     ASSERT_EQ(json["planes"].size(), 3u);
     const auto& wall = json["planes"][1];
     EXPECT_EQ(wall["id"], 3);
     EXPECT_EQ(json["planes"][0]["label"], "floor");
-    EXPECT_EQ(wall["label"], "unknown");
+    EXPECT_EQ(wall["label"], "wall");
     EXPECT_NEAR(wall["normal"][0], -1, 1e-9);
     EXPECT_NEAR(wall["d"], 1, 1e-6);
     EXPECT_EQ(wall["inliers"], map.planes[1].inliers);
@@ -110,6 +80,7 @@ TEST(PlanesJson, SaysWhatTheMapSays) {
 
 TEST(PlanesJson, OfAnEmptyMapAndOfNan) {
     const auto empty = nlohmann::json::parse(planes_json({}));
+    EXPECT_TRUE(empty["up"].is_null());
     EXPECT_TRUE(empty["planes"].empty() && empty["lines"].empty() && empty["points"].empty());
     PlaneMap map = corner();
     map.planes[0].rms = std::numeric_limits<float>::quiet_NaN();
@@ -137,6 +108,10 @@ TEST(PlanesPly, HasTheAreaAndNormalsOfThePlanes) {
     for (const MapPlane& plane : map.planes) expected += static_cast<double>(plane.area);
     EXPECT_NEAR(area, expected, 1e-5);
     EXPECT_TRUE(read_ply(planes_ply({})).faces.empty());
+    EXPECT_THAT(planes_ply(map), HasSubstr("comment plane 3 wall, "));
+    PlaneMap spoilt = map;
+    spoilt.planes[1].center.setConstant(std::numeric_limits<float>::quiet_NaN());
+    EXPECT_LT(read_ply(planes_ply(spoilt)).faces.size(), ply.faces.size());
 }
 
 TEST(PlaneColor, TellsNeighbouringIdsApart) {
@@ -144,12 +119,6 @@ TEST(PlaneColor, TellsNeighbouringIdsApart) {
         const Rgb a = plane_color(id), b = plane_color(id + 1);
         EXPECT_GT(std::abs(a.r - b.r) + std::abs(a.g - b.g) + std::abs(a.b - b.b), 60) << id;
     }
-}
-
-TEST(GuessUp, IsTheNormalOfTheLevelPlane) {
-    EXPECT_NEAR((guess_up(corner(), walk()) - Eigen::Vector3d::UnitZ()).norm(), 0, 1e-6);
-    EXPECT_NEAR((guess_up({}, walk()) - Eigen::Vector3d::UnitZ()).norm(), 0, 1e-9);
-    EXPECT_EQ(guess_up({}, {}), Eigen::Vector3d(0, -1, 0));
 }
 
 TEST(Drawings, ShowPlanesAndTrajectory) {
@@ -163,6 +132,23 @@ TEST(Drawings, ShowPlanesAndTrajectory) {
     EXPECT_THAT(overhead_svg(corner(), walk()), Not(HasSubstr(">12</text>")))
         << "a ceiling hides what is below";
     EXPECT_EQ(overhead_svg(corner(), walk()), overhead_svg(corner(), walk()));
+}
+
+TEST(Drawings, TellTheLabels) {
+    EXPECT_THAT(overhead_svg(corner(), walk()), HasSubstr("<title>plane 3, wall, 3.65 m²</title>"));
+    EXPECT_THAT(overhead_svg(corner(), walk()), HasSubstr(">wall (1)</text>"));
+    EXPECT_THAT(overhead_svg(corner(), walk()), Not(HasSubstr(">ceiling (1)</text>"))) << "not drawn";
+    EXPECT_THAT(perspective_svg(corner(), walk()), HasSubstr("<title>plane 1, floor, 4.00 m²</title>"));
+}
+
+TEST(Drawings, LeaveOutWhatIsNotFinite) {
+    PlaneMap map = corner();
+    map.planes[0].center.setConstant(std::numeric_limits<float>::quiet_NaN());
+    for (const std::string& svg : {overhead_svg(map, walk()), perspective_svg(map, walk())}) {
+        EXPECT_THAT(svg, Not(HasSubstr("nan")));
+        EXPECT_THAT(svg, Not(HasSubstr("plane 1,")));
+        EXPECT_THAT(svg, HasSubstr("plane 3,"));
+    }
 }
 
 TEST(Drawings, OfAnEmptyMap) {

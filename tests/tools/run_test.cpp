@@ -64,8 +64,9 @@ TEST_F(RunTest, WritesEverythingAndTheSameBytesAgain) {
         ASSERT_EQ(result.exit_code, 0) << result.err;
         EXPECT_NE(result.out.find("Every ratio below is at that coverage"), std::string::npos);
     }
-    for (const char* file : {"trajectory.txt", "planes.json", "planes.ply", "plane_map.lcmlog", "octomap.bt",
-                             "map.svg", "overhead.svg", "groundtruth.txt", "planes_truth.json"}) {
+    for (const char* file : {"trajectory.txt", "planes.json", "planes.ply", "planes.obj", "planes.mtl",
+                             "planes.glb", "floor_plan.geojson", "plane_map.lcmlog", "octomap.bt", "map.svg",
+                             "overhead.svg", "groundtruth.txt", "planes_truth.json"}) {
         EXPECT_EQ(read_file(folder_ / "a" / file), read_file(folder_ / "b" / file)) << file;
     }
     const Json r = report("a");

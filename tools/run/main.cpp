@@ -82,8 +82,8 @@ int run(RunOptions options) {
         write_outputs(options.output, options.input, *input, pipeline, clock);
     std::fputs(report_markdown(report).c_str(), stdout);
     std::printf(
-        "\nIn %s: trajectory.txt planes.json planes.ply plane_map.lcmlog%s map.svg overhead.svg report.json "
-        "report.md\n",
+        "\nIn %s: trajectory.txt planes.json planes.ply planes.obj planes.mtl planes.glb "
+        "floor_plan.geojson plane_map.lcmlog%s map.svg overhead.svg report.json report.md\n",
         options.output.c_str(), pipeline.octomap() != nullptr ? " octomap.bt" : "");
     if (pipeline.estimates().empty())
         throw std::runtime_error(options.input + ": no frame of it could be used");
@@ -103,7 +103,8 @@ int main(int argc, char** argv) {
         "planemap-run",
         "A recording to a plane map: runs all modules in one process, as fast as the machine allows, and "
         "writes the\n"
-        "trajectory, the map, an OctoMap of the same depth and poses, and a report of what each takes.\n"
+        "trajectory, the map (JSON, PLY, OBJ, glTF, GeoJSON, SVG, LCM), an OctoMap of the same depth and "
+        "poses, and a report of what each takes.\n"
         "Example: planemap-run sim:office --output out/office");
     planemap::RunOptions options;
     planemap::add_run_flags(flags, options);

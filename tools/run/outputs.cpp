@@ -115,6 +115,10 @@ Json write_outputs(const std::filesystem::path& folder, const std::string& input
     write_trajectory(folder / "trajectory.txt", trajectory);
     write_file(folder / "planes.json", planes_json(map, pipeline.map().mapper().sightings()));
     write_file(folder / "planes.ply", planes_ply(map));
+    write_file(folder / "planes.obj", planes_obj(map));
+    write_file(folder / "planes.mtl", planes_mtl(map));
+    write_file(folder / "planes.glb", planes_glb(map));
+    write_file(folder / "floor_plan.geojson", floor_plan_geojson(map, trajectory));
     write_file(folder / "plane_map.lcmlog", plane_map_log(map));
     write_file(folder / "overhead.svg", overhead_svg(map, trajectory));
     write_file(folder / "map.svg", perspective_svg(map, trajectory));

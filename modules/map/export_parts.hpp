@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the exports share.
+#pragma once
+
+#include <array>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/plane_map.hpp"
+#include "core/trajectory.hpp"
+
+namespace planemap {
+
+/// A number with a fixed number of decimals, a point whatever the locale, and no negative zero.
+std::string fixed(double value, int decimals);
+
+/// "plane_3_wall".
+std::string plane_name(const MapPlane& plane);
+
+/// The planes that can be drawn: all values finite, an outline that is not empty.
+std::vector<const MapPlane*> drawable_planes(const PlaneMap& map);
+
+/// The outline's rings in the world frame.
+std::vector<std::vector<Eigen::Vector3d>> world_rings(const MapPlane& plane);
+
+/// The outline as triangles, in the world frame, counter-clockwise about the normal.
+struct PlaneMesh {
+    std::vector<Eigen::Vector3f> vertices;
+    std::vector<std::array<int, 3>> triangles;
+};
+PlaneMesh mesh_of(const MapPlane& plane);
+
+/// Up in the world, a unit vector: map.up if that is known, otherwise how the camera was held on average (its
+/// image rows pointing down), without poses the first camera's up (0, -1, 0).
+Eigen::Vector3d up_of(const PlaneMap& map, const Trajectory& trajectory);
+
+/// World to a level frame: z is up, x runs along most walls. A rotation.
+Eigen::Matrix3d level_from_world(const PlaneMap& map, const Eigen::Vector3d& up);
+
+/// Where an upright plane stands, seen from above: pieces in x and y of the level frame. Parts above one
+/// another are one piece.
+std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> footprint(const MapPlane& plane,
+                                                                   const Eigen::Matrix3d& level_from_world);
+
+}  // namespace planemap

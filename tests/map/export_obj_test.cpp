@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <map>
+#include <sstream>
+
+#include "map/corner.hpp"
+#include "map/export.hpp"
+
+namespace planemap {
+namespace {
+
+using scene::corner;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+struct Obj {
+    std::vector<Eigen::Vector3d> vertices, normals;
+    std::map<std::string, double> areas;           ///< by object; negative if faces turn against the normal
+    std::map<std::string, std::string> materials;  ///< by object
+};
+
+Obj read_obj(const std::string& text) {
+    Obj obj;
+    std::istringstream lines(text);
+    std::string object;
+    for (std::string line; std::getline(lines, line);) {
+        std::istringstream in(line);
+        std::string keyword;
+        in >> keyword;
+        Eigen::Vector3d v;
+        if (keyword == "v" && in >> v.x() >> v.y() >> v.z()) obj.vertices.push_back(v);
+        if (keyword == "vn" && in >> v.x() >> v.y() >> v.z()) obj.normals.push_back(v);
+        if (keyword == "o") in >> object;
+        if (keyword == "usemtl") in >> obj.materials[object];
+        if (keyword != "f") continue;
+        std::array<Eigen::Vector3d, 3> p;
+        std::size_t vertex = 0, normal = 0;
+        char slash = 0;
+        for (Eigen::Vector3d& corner : p) {
+            in >> vertex >> slash >> slash >> normal;
+            corner = obj.vertices.at(vertex - 1);
+        }
+        EXPECT_FALSE(in.fail()) << line;
+        obj.areas[object] += 0.5 * (p[1] - p[0]).cross(p[2] - p[0]).dot(obj.normals.at(normal - 1));
+    }
+    return obj;
+}
+
+TEST(PlanesObj, HasAnObjectAPlaneWithItsArea) {
+    const PlaneMap map = corner();
+    const Obj obj = read_obj(planes_obj(map));
+    ASSERT_EQ(obj.areas.size(), 3u);
+    EXPECT_NEAR(obj.areas.at("plane_1_floor"), map.planes[0].area, 1e-3);
+    EXPECT_NEAR(obj.areas.at("plane_3_wall"), map.planes[1].area, 1e-3);
+    EXPECT_NEAR(obj.areas.at("plane_12_ceiling"), map.planes[2].area, 1e-3);
+    for (const auto& [object, material] : obj.materials)
+        EXPECT_THAT(planes_mtl(map), HasSubstr("newmtl " + material + "\nKd 0."));
+    EXPECT_THAT(planes_obj(map), HasSubstr("mtllib planes.mtl\n"));
+    EXPECT_THAT(planes_obj(map, "a.mtl"), HasSubstr("mtllib a.mtl\n"));
+    EXPECT_EQ(planes_obj(map), planes_obj(corner()));
+}
+
+TEST(PlanesObj, OfAnEmptyMapAndOfNan) {
+    EXPECT_TRUE(read_obj(planes_obj({})).vertices.empty());
+    PlaneMap map = corner();
+    map.planes[0].center.setConstant(std::numeric_limits<float>::quiet_NaN());
+    EXPECT_EQ(read_obj(planes_obj(map)).areas.size(), 2u);
+    EXPECT_THAT(planes_obj(map) + planes_mtl(map), Not(HasSubstr("nan")));
+}
+
+}  // namespace
+}  // namespace planemap

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "map/labels.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "core/random_values.hpp"
+#include "map/furniture.hpp"
+
+namespace planemap {
+namespace {
+
+using scene::facing_down;
+using scene::kDegree;
+using scene::level;
+using scene::Rectangle;
+using scene::upright;
+
+/// First letters of the labels, in the order of the planes.
+std::string labels(const PlaneMap& map) {
+    std::string text;
+    for (const MapPlane& plane : map.planes) text += label_name(plane.label)[0];
+    return text;
+}
+
+PlaneMap named(const std::vector<Rectangle>& room, const std::vector<Pose>& poses,
+               const Pose& world_from_room = Pose::Identity()) {
+    PlaneMap map = scene::map_of(room, world_from_room);
+    name_planes(map, scene::moved(world_from_room, poses));
+    return map;
+}
+
+std::vector<Rectangle> operator+(std::vector<Rectangle> a, const std::vector<Rectangle>& b) {
+    a.insert(a.end(), b.begin(), b.end());
+    return a;
+}
+
+/// Four walls, floor, ceiling, table, seat, cabinet side, tall cupboard, ramp, lamp, underside of the table.
+std::vector<Rectangle> furnished() {
+    Rectangle ramp = level(-1.5, -1, 0.4, 0.6, 0.4);
+    ramp.world_from_face = ramp.world_from_face * Eigen::AngleAxisd(30 * kDegree, Eigen::Vector3d::UnitX());
+    return scene::walls(3, 2) + std::vector<Rectangle>{level(0, 0, 0, 3, 2),
+                                                       facing_down(level(0, 0, 2.5, 3, 2)),
+                                                       level(1, 1, 0.75, 0.8, 0.5),
+                                                       level(-1, 1, 0.45, 0.2, 0.2),
+                                                       upright(2, -1, 0, 0.3, 0.6, 0.8),
+                                                       upright(-2, 1.8, 0, -1.4, 1, 2),
+                                                       ramp,
+                                                       facing_down(level(0, 0, 2.2, 0.3, 0.3)),
+                                                       facing_down(level(1, 1, 0.72, 0.8, 0.5))};
+}
+constexpr const char* kFurnished = "wwwwfchhowohh";
+
+TEST(NamePlanes, OfAFurnishedRoomInAnyWorldAndAtAnyPitch) {
+    test::Random random(1);
+    for (int i = 0; i < 20; ++i) {
+        const Pose world_from_room = random.pose();
+        const double pitch = random.uniform(-20, 45) * kDegree;
+        const PlaneMap map = named(furnished(), scene::looking_around(1.4, pitch), world_from_room);
+        EXPECT_EQ(labels(map), kFurnished) << pitch;
+        EXPECT_LT((map.up.cast<double>() - world_from_room.linear().col(2)).norm(), 0.01);
+        EXPECT_NEAR(map.up.norm(), 1, 1e-6);
+    }
+}
+
+TEST(NamePlanes, GivesTheSameTwice) {
+    PlaneMap a = named(furnished(), scene::looking_around(1.4, 0.5)), b = a;
+    name_planes(b, scene::looking_around(1.4, 0.5));
+    EXPECT_EQ(labels(a), labels(b));
+    EXPECT_EQ(a.up, b.up);
+    name_planes(b, {});
+    EXPECT_EQ(labels(b), std::string(b.planes.size(), 'u')) << "earlier names are not kept";
+}
+
+TEST(NamePlanes, FloorInPiecesAndAtTwoHeights) {
+    const std::vector<Rectangle> room =
+        scene::walls(6, 2) + std::vector<Rectangle>{level(-4, 0, 0, 2, 2), level(2, 0, 0.04, 2, 2),
+                                                    level(5, 0, -0.06, 0.3, 0.3), level(0, 1, 0.2, 0.4, 0.4)};
+    EXPECT_EQ(labels(named(room, scene::looking_around(1.4, 0.4))), "wwwwfffh");
+}
+
+TEST(NamePlanes, ALongFloorThatTiltsIsOneFloor) {
+    // Drift: the further piece is in the plane of the nearer one, 35 cm lower.
+    Pose tilted = Pose::Identity();
+    tilted.rotate(Eigen::AngleAxisd(1 * kDegree, Eigen::Vector3d::UnitY()));
+    std::vector<Rectangle> floors = {level(0, 0, 0, 5, 2), level(20, 0, 0, 4, 2)};
+    for (Rectangle& r : floors) r.world_from_face = tilted * r.world_from_face;
+    EXPECT_EQ(labels(named(scene::walls(25, 2) + floors, scene::looking_around(1.4, 0.4))), "wwwwff");
+}
+
+TEST(NamePlanes, WithoutAFloorATableIsNone) {
+    const std::vector<Pose> poses = scene::looking_around(1.4, 0.4);
+    const Rectangle table = level(1, 0, 0.75, 0.8, 0.5);
+    EXPECT_EQ(labels(named({table}, poses)), "h");
+    EXPECT_EQ(labels(named(scene::walls(3, 2) + std::vector<Rectangle>{table}, poses)), "wwwwh");
+    const Rectangle conference_table = level(1, 0, 0.75, 2, 1);
+    EXPECT_EQ(labels(named(scene::walls(3, 2) + std::vector<Rectangle>{conference_table}, poses)), "wwwwh")
+        << "walls go on below it";
+    EXPECT_EQ(labels(named({table, level(0, 1, 0, 0.5, 0.5)}, poses)), "hf") << "a little of the floor";
+}
+
+TEST(NamePlanes, WithoutAFloorThereAreWallsAndACeiling) {
+    EXPECT_EQ(
+        labels(named(scene::walls(3, 2) + std::vector<Rectangle>{facing_down(level(0, 0, 2.5, 3, 2)),
+                                                                 facing_down(level(1, 1, 0.72, 0.8, 0.8))},
+                     scene::looking_around(1.4, 0.3))),
+        "wwwwch");
+}
+
+TEST(NamePlanes, FromAsLowAsARobot) {
+    // Its camera sees the underside of a table from below; that is no ceiling, with the walls above it.
+    const std::vector<Pose> poses = scene::looking_around(0.3, 0.1);
+    const Rectangle under = facing_down(level(1, 1, 0.72, 1, 0.8));
+    EXPECT_EQ(labels(named(scene::walls(3, 2) + std::vector<Rectangle>{level(0, 0, 0, 3, 2), under}, poses)),
+              "wwwwfh");
+    EXPECT_EQ(labels(named(scene::walls(3, 2) + std::vector<Rectangle>{under}, poses)), "wwwwh");
+}
+
+TEST(NamePlanes, TwoStoreysAndStairs) {
+    std::vector<Rectangle> house = scene::walls(4, 3, 0, 2.5) + scene::walls(4, 3, 2.8, 2.4);
+    house = house + std::vector<Rectangle>{level(-1, 0, 0, 3, 3), facing_down(level(-1, 0, 2.5, 3, 3)),
+                                           level(-1, 0, 2.8, 3, 3), facing_down(level(0, 0, 5.2, 4, 3)),
+                                           level(-2, 1, 3.55, 1, 0.5)};
+    for (int step = 1; step < 16; ++step)
+        house.push_back(level(2.5 + 0.02 * step, 0, 0.175 * step, 0.14, 0.5));
+    std::vector<Pose> poses = scene::looking_around(1.4, 0.3);
+    for (const Pose& pose : scene::looking_around(4.2, 0.3)) poses.push_back(pose);
+    EXPECT_EQ(labels(named(house, poses)), "wwwwwwwwfcfch" + std::string(15, 'h'));
+    // Who was never upstairs does not know that one can stand there.
+    const std::string from_below = labels(named(house, scene::looking_around(1.4, 0.3)));
+    EXPECT_EQ(from_below[8], 'f');
+    EXPECT_EQ(from_below[10], 'h');
+}
+
+TEST(NamePlanes, AFewCentimetresOfAMirrorBelowTheFloorDoNotMatter) {
+    EXPECT_EQ(labels(named(furnished() + std::vector<Rectangle>{level(0, 1, -0.8, 0.4, 0.4)},
+                           scene::looking_around(1.4, 0.3))),
+              std::string(kFurnished) + "h");
+}
+
+TEST(NamePlanes, OfNothing) {
+    PlaneMap map;
+    name_planes(map, scene::looking_around(1.4, 0));
+    EXPECT_TRUE(map.up.isZero());
+    map = scene::map_of(furnished());
+    map.up = Eigen::Vector3f::UnitX();
+    name_planes(map, {});
+    EXPECT_TRUE(map.up.isZero()) << "without cameras nothing says which side is up";
+    EXPECT_EQ(labels(map), std::string(map.planes.size(), 'u'));
+}
+
+TEST(NamePlanes, LeavesOutWhatIsNotFinite) {
+    PlaneMap map = scene::map_of(furnished());
+    map.planes[0].center.setConstant(std::numeric_limits<float>::quiet_NaN());
+    map.planes[6].normal.setConstant(std::numeric_limits<float>::infinity());
+    map.planes[7].area = std::numeric_limits<float>::quiet_NaN();
+    map.planes[8].outline = {};
+    std::vector<Pose> poses = scene::looking_around(1.4, 0.3);
+    poses[0].translation().setConstant(std::numeric_limits<double>::quiet_NaN());
+    name_planes(map, poses);
+    EXPECT_EQ(labels(map), "uwwwfcuuowohh");
+}
+
+}  // namespace
+}  // namespace planemap
