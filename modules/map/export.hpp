@@ -41,11 +41,11 @@ std::string planes_mtl(const PlaneMap& map);
 /// metres; the root node turns it so that y is up and most walls run along x and z.
 std::string planes_glb(const PlaneMap& map);
 
-/// GeoJSON of the floor plan: floors and horizontal surfaces as polygons with holes, walls as lines, each
-/// with label, height range and area, and the trajectory as a line. Coordinates are not degrees but metres in
-/// a local level frame, x along most walls; the file says so and how the world is turned into it. Heights
-/// are above the largest floor, without one above the world's origin. Rounded to a millimetre. Planes whose
-/// label is another, or unknown, are left out.
+/// GeoJSON of the floor plan: what is upright (walls, sides of furniture) as lines, the rest (floors, tables,
+/// slopes) as polygons with holes, each with label, height range and area, and the trajectory as a line;
+/// ceilings and planes without a label are left out. Coordinates are not degrees but metres in a local level
+/// frame, x along most walls; the file says so and how the world is turned into it. Heights are above the
+/// largest floor, without one above the world's origin. Rounded to a millimetre.
 std::string floor_plan_geojson(const PlaneMap& map, const Trajectory& trajectory);
 
 /// SVG of the planes seen from above with their ids, walls as lines, the trajectory and a scale bar (the

@@ -18,6 +18,8 @@ constexpr const char* kFrame =
     "ENGCRS[\"planemap level frame\",EDATUM[\"start of the map\"],CS[Cartesian,2],AXIS[\"x\",east],"
     "AXIS[\"y\",north],LENGTHUNIT[\"metre\",1]]";
 
+constexpr double kUpright = 0.35;  // sine of the slope up to which a plane is drawn as a line
+
 double rounded(double metres) {
     return std::round(1e3 * metres) / 1e3 + 0.0;  // no negative zero
 }
@@ -107,7 +109,8 @@ Json plane_feature(const MapPlane& plane, const Eigen::Matrix3d& level, double f
                              {"low_m", rounded(low)},
                              {"high_m", rounded(high)},
                              {"area_m2", rounded(static_cast<double>(plane.area))}};
-    return plane.label == PlaneLabel::kWall
+    const double upward = level.row(2).dot(plane.normal.cast<double>());
+    return std::abs(upward) < kUpright
                ? feature_of_pieces(plane.id, "LineString", line_pieces(plane, level), properties)
                : feature_of_pieces(plane.id, "Polygon", polygon_pieces(rings), properties);
 }
@@ -136,7 +139,8 @@ std::string floor_plan_geojson(const PlaneMap& map, const Trajectory& trajectory
     const double floor_height = floor != nullptr ? level.row(2).dot(floor->center.cast<double>()) : 0;
 
     Json features = Json::array();
-    for (const PlaneLabel label : {PlaneLabel::kFloor, PlaneLabel::kHorizontal, PlaneLabel::kWall}) {
+    for (const PlaneLabel label :
+         {PlaneLabel::kFloor, PlaneLabel::kHorizontal, PlaneLabel::kOther, PlaneLabel::kWall}) {
         for (const MapPlane* plane : planes)
             if (plane->label == label) features.push_back(plane_feature(*plane, level, floor_height));
     }

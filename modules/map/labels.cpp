@@ -70,7 +70,8 @@ class Namer {
     static bool is_level(const Standing& s) { return s.lie == Lie::kFacesUp || s.lie == Lie::kFacesDown; }
 
     void add(MapPlane& plane) {
-        if (!plane.normal.allFinite() || !plane.center.allFinite() || !std::isfinite(plane.area)) return;
+        const bool is_plane = std::abs(plane.normal.norm() - 1) < 1e-3f && plane.center.allFinite();
+        if (!is_plane || !std::isfinite(plane.area) || !std::isfinite(plane.angle)) return;
         constexpr double kRadians = std::numbers::pi / 180;
         const double tolerance = rules_.gravity.tolerance_deg * kRadians;
         const Pose world_from_plane = plane.world_from_plane();

@@ -43,6 +43,8 @@ PlaneMap room(const Pose& world_from_room) {
     planes.back().holes = {scene::rectangle_ring(-1, -1, 0.5, 1), scene::rectangle_ring(-0.5, -0.5, 0, 0.5)};
     planes.push_back(scene::level(1, 1, 0.75, 0.5, 0.4));
     planes.push_back(scene::facing_down(scene::level(0, 0, 2.5, 3, 2)));
+    planes.push_back(scene::upright(1, 0.6, 0, 0.5, 0.8, 0.7));
+    planes.push_back(planes.back());
     PlaneMap map = scene::map_of(planes, world_from_room);
     map.planes[5].outline = MapOutline(
         Outline{{scene::rectangle_ring(-0.5, -0.4, -0.1, 0.4), scene::rectangle_ring(0.1, -0.4, 0.5, 0.4)}});
@@ -50,6 +52,7 @@ PlaneMap room(const Pose& world_from_room) {
     map.planes[4].label = PlaneLabel::kFloor;
     map.planes[5].label = PlaneLabel::kHorizontal;
     map.planes[6].label = PlaneLabel::kCeiling;
+    map.planes[7].label = PlaneLabel::kOther;  // and one without a label
     map.up = world_from_room.linear().col(2).cast<float>();
     return map;
 }
@@ -68,7 +71,8 @@ TEST(FloorPlan, HasAreasLengthsAndHeightsInAnyWorld) {
         const Json plan = Json::parse(floor_plan_geojson(room(world_from_room), walk(world_from_room)));
         EXPECT_EQ(plan["type"], "FeatureCollection");
         EXPECT_EQ(plan["crs"]["type"], "name");
-        ASSERT_EQ(plan["features"].size(), 7u) << "no ceiling, but the trajectory";
+        ASSERT_EQ(plan["features"].size(), 8u) << "no ceiling, but the trajectory";
+        EXPECT_EQ(feature(plan, 7)["geometry"]["type"], "LineString");
         const Json& floor = feature(plan, 4);
         EXPECT_EQ(floor["properties"]["label"], "floor");
         ASSERT_EQ(floor["geometry"]["type"], "MultiPolygon") << "the island in the hole is a part of its own";
@@ -110,7 +114,7 @@ TEST(FloorPlan, OfNothingAndOfNan) {
     Trajectory trajectory = walk(Pose::Identity());
     trajectory[2].world_from_camera.translation().setConstant(std::numeric_limits<double>::infinity());
     const Json plan = Json::parse(floor_plan_geojson(map, trajectory));
-    EXPECT_EQ(plan["features"].size(), 6u);
+    EXPECT_EQ(plan["features"].size(), 7u);
     EXPECT_NEAR(feature(plan, 0)["properties"]["high_m"], 2.5, 0.002)
         << "above the origin when there is no floor";
     EXPECT_EQ(feature(plan, "trajectory")["geometry"]["coordinates"].size(), 5u);

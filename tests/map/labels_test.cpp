@@ -156,10 +156,11 @@ TEST(NamePlanes, LeavesOutWhatIsNotFinite) {
     map.planes[6].normal.setConstant(std::numeric_limits<float>::infinity());
     map.planes[7].area = std::numeric_limits<float>::quiet_NaN();
     map.planes[8].outline = {};
+    map.planes[9].normal.setZero();
     std::vector<Pose> poses = scene::looking_around(1.4, 0.3);
     poses[0].translation().setConstant(std::numeric_limits<double>::quiet_NaN());
     name_planes(map, poses);
-    EXPECT_EQ(labels(map), "uwwwfcuuowohh");
+    EXPECT_EQ(labels(map), "uwwwfcuuouohh");
 }
 
 }  // namespace
