@@ -156,6 +156,26 @@ TEST(Judge, AnOutlineThatIsTooLargeCosts) {
     EXPECT_LT(judgement.outline_iou().value(), 0.9);
 }
 
+TEST(Judge, AMapPlaneMayBeOnTwoPartsOfOnePlane) {
+    const Face both{"", {0, 0, 0}, {0, 0, 1}, {1, 0, 0}, 2, 1};
+    const TruePlane whole = true_plane(both);
+    std::vector<TruePlane> truth{whole, whole};
+    for_each_cell(whole.visible, [&](int x, int y) {
+        for (const int side : {0, 1})
+            if ((x < 0) != (side == 0))
+                truth[static_cast<std::size_t>(side)].visible.mask.cells[whole.visible.mask.index(
+                    x - whole.visible.x0, y - whole.visible.y0)] = 0;
+    });
+    const Judgement judgement = judge(truth, map_of({both}), Pose::Identity());
+    for (const TruePlaneVerdict& plane : judgement.planes) {
+        EXPECT_NEAR(plane.area, 4, 1e-9);
+        EXPECT_TRUE(plane.found);
+        EXPECT_GT(plane.iou, 0.999);
+    }
+    EXPECT_EQ(judgement.split(), 0u);
+    EXPECT_TRUE(judgement.spurious.empty());
+}
+
 TEST(Judge, NamesPlanesThatTheMapperMayMerge) {
     std::vector<Face> faces = room();
     faces.push_back({"doormat", {0, 0, 0.03}, {0, 0, 1}, {1, 0, 0}, 0.6, 0.6});

@@ -67,9 +67,19 @@ std::vector<std::vector<double>> all_overlaps(const std::vector<Candidate>& cand
     return overlaps;
 }
 
-TruePlaneVerdict verdict_of(const TruePlane& truth, std::size_t column,
+/// True for a cell on another part of the same plane: a map plane may well be on both.
+bool is_elsewhere(const std::vector<TruePlane>& all, std::size_t column, int x, int y) {
+    return std::any_of(all.begin(), all.end(), [&](const TruePlane& other) {
+        return &other != &all[column] &&
+               other.world_from_plane.matrix() == all[column].world_from_plane.matrix() &&
+               other.visible.at(x, y);
+    });
+}
+
+TruePlaneVerdict verdict_of(const std::vector<TruePlane>& all, std::size_t column,
                             const std::vector<Candidate>& candidates,
                             const std::vector<std::vector<double>>& overlaps) {
+    const TruePlane& truth = all[column];
     TruePlaneVerdict verdict;
     verdict.name = truth.name;
     verdict.area = truth.visible.area();
@@ -94,10 +104,16 @@ TruePlaneVerdict verdict_of(const TruePlane& truth, std::size_t column,
     verdict.angle_deg = angle_between(candidates[best].plane.normal, truth.plane.normal) * kDegrees;
     verdict.distance_m = -candidates[best].plane.signed_distance(truth.centre());
     outlines = united(outlines, projected(candidates[best], truth));
-    std::size_t common = 0;
-    for_each_cell(outlines, [&](int x, int y) { common += truth.visible.at(x, y); });
+    std::size_t common = 0, beside = 0;
+    for_each_cell(outlines, [&](int x, int y) {
+        if (truth.visible.at(x, y)) {
+            ++common;
+        } else {
+            beside += !is_elsewhere(all, column, x, y);
+        }
+    });
     verdict.common_m2 = static_cast<double>(common) * kCellArea;
-    verdict.united_m2 = verdict.area + outlines.area() - verdict.common_m2;
+    verdict.united_m2 = verdict.area + static_cast<double>(beside) * kCellArea;
     verdict.iou = verdict.common_m2 / verdict.united_m2;
     return verdict;
 }
@@ -237,7 +253,7 @@ Judgement judge(const std::vector<TruePlane>& truth, const PlaneMap& map, const 
     std::vector<Match> matches;
     for (std::size_t i = 0; i < truth.size(); ++i) {
         const TruePlaneVerdict& verdict =
-            judgement.planes.emplace_back(verdict_of(truth[i], i, candidates, overlaps));
+            judgement.planes.emplace_back(verdict_of(truth, i, candidates, overlaps));
         if (!verdict.found || !verdict.counts()) continue;
         const auto best = std::find_if(candidates.begin(), candidates.end(),
                                        [&](const Candidate& c) { return c.id == verdict.best; });

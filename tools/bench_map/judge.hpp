@@ -25,7 +25,9 @@ struct TruePlaneVerdict {
     /// Ids of the map planes that belong to it (that overlap no other true plane more) by more than
     /// kLeastArea_m2: more than one means that it is split.
     std::vector<int> parts;
-    double iou = 0;  ///< of the visible surface and the outlines of `best` and all that belong to it
+    /// Of the visible surface and the outlines of `best` and all that belong to it; of those, what is on
+    /// other parts of the same plane is left out.
+    double iou = 0;
     double common_m2 = 0, united_m2 = 0;  ///< the two areas of iou
     bool counts() const { return area > kLeastArea_m2; }
 };

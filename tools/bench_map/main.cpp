@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "bench_map/growth.hpp"
 #include "bench_map/row.hpp"
@@ -188,6 +189,8 @@ nlohmann::ordered_json print_growth(const Arguments& arguments, const std::vecto
 }
 
 int run(const Arguments& arguments) {
+    if (arguments.frames < 0)
+        throw std::invalid_argument("frames: " + std::to_string(arguments.frames) + ", must be at least 0");
     const bool json_to_stdout = arguments.json == "-",
                json_to_file = !arguments.json.empty() && !json_to_stdout;
     const std::vector<std::string> sequences = parse_sequences(arguments.sequences);
