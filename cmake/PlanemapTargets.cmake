@@ -43,6 +43,8 @@ function(planemap_precompiled name)
 endfunction()
 function(planemap_use_precompiled target name)
     if(TARGET ${name})
+        # GCC 12 warns of copies of strings in vain once their header is precompiled.
+        target_compile_options(${target} PRIVATE -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow)
         target_precompile_headers(${target} REUSE_FROM ${name})
     endif()
 endfunction()

@@ -6,6 +6,10 @@ int main(int argc, char** argv) {
     planemap::MapShellOptions options;
     process.flags().add("o,output", options.output,
                         "Folder for plane_map.lcmlog; without it nothing is written");
+    process.flags().add(
+        "map", options.start,
+        "plane_map.lcmlog to start from, in the world frame of this run: its planes keep their ids "
+        "and grow on");
     add_flags(process.flags(), options.map);
     return process.run(
         argc, argv, [&](planemap::Bus& bus) { return std::make_unique<planemap::MapShell>(bus, options); });

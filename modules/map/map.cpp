@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "core/validation.hpp"
+#include "map/labels.hpp"
 
 namespace planemap {
 
@@ -110,6 +111,7 @@ void PlaneMapper::start_from(const PlaneMap& map) {
         next_id_ = std::max(next_id_, plane.id + 1);
     }
     map_.utime = map.utime;
+    map_.up = map.up;
     rebuild();
     refresh();
 }
@@ -191,6 +193,10 @@ double PlaneMapper::weight(const StoredRegion& region) const {
     return pose_variance / (pose_variance + sigma * sigma);
 }
 
+Reliability PlaneMapper::reliability(const StoredRegion& region) const {
+    return {weight(region), std::hypot(options_.pose_sigma_m, options_.noise.sigma(mean_depth(region)))};
+}
+
 /// What a view counts for in the shape: 2^strength.
 int PlaneMapper::strength(const StoredRegion& region) const {
     const double w = weight(region);
@@ -210,7 +216,7 @@ void PlaneMapper::integrate(int keyframe_id) {
         std::size_t at = set_.partner_of(placed);
         if (at == SurfaceSet::none()) {
             outline_in(Pose::Identity(), region, keyframe, polygon_);
-            at = set_.push_back(Surface(placed, polygon_, weight(region)));
+            at = set_.push_back(Surface(placed, polygon_, reliability(region)));
             Surface& fresh = set_.surfaces()[at];
             fresh.id = next_id_++;
             fresh.grid = EvidenceGrid(fresh.box.frame_from_box, options_.outline_cell_m);
@@ -218,7 +224,7 @@ void PlaneMapper::integrate(int keyframe_id) {
             Surface& surface = set_.surfaces()[at];
             outline_in(surface.world_from_extent.inverse(Eigen::Isometry) * placed.box.frame_from_box, region,
                        keyframe, polygon_);
-            surface.add(placed, polygon_, weight(region));
+            surface.add(placed, polygon_, reliability(region));
             set_.update(at);
         }
         Surface& surface = set_.surfaces()[at];
@@ -336,13 +342,13 @@ void PlaneMapper::fold() {
                                    [&](const Surface& s) { return resolved(s.id) == plane_id; });
             if (at == fixed_.end()) {
                 outline_in(Pose::Identity(), region, keyframe, polygon_);
-                at = fixed_.insert(fixed_.end(), Surface(placed, polygon_, weight(region)));
+                at = fixed_.insert(fixed_.end(), Surface(placed, polygon_, reliability(region)));
                 at->id = plane_id;
                 at->grid = EvidenceGrid(at->box.frame_from_box, options_.outline_cell_m);
             } else {
                 outline_in(at->world_from_extent.inverse(Eigen::Isometry) * placed.box.frame_from_box, region,
                            keyframe, polygon_);
-                at->add(placed, polygon_, weight(region));
+                at->add(placed, polygon_, reliability(region));
             }
             outline_in(at->grid.world_from_grid().inverse(Eigen::Isometry) * placed.box.frame_from_box,
                        region, keyframe, polygon_);
@@ -420,13 +426,13 @@ void PlaneMapper::rebuild() {
         std::size_t at = fresh.partner_of(placed);
         if (at == SurfaceSet::none()) {
             outline_in(Pose::Identity(), region, keyframe, polygon_);
-            at = fresh.push_back(Surface(placed, polygon_, weight(region)));
+            at = fresh.push_back(Surface(placed, polygon_, reliability(region)));
             fresh.surfaces()[at].id = next_id_++;
         } else {
             Surface& surface = fresh.surfaces()[at];
             outline_in(surface.world_from_extent.inverse(Eigen::Isometry) * placed.box.frame_from_box, region,
                        keyframe, polygon_);
-            surface.add(placed, polygon_, weight(region));
+            surface.add(placed, polygon_, reliability(region));
             fresh.update(at);
         }
         joined.emplace_back(&entry, at);
@@ -574,6 +580,18 @@ bool PlaneMapper::derive(Surface& surface, std::optional<MapPlane>& plane) const
     return true;
 }
 
+/// Which way is up, and what the planes are. Some hundred keyframes tell as much as all.
+void PlaneMapper::name() {
+    constexpr std::size_t kCameras = 128;
+    const std::size_t stride = 1 + poses_.size() / kCameras;
+    std::vector<Pose> cameras;
+    std::size_t i = 0;
+    for (const auto& [id, pose] : poses_) {
+        if (i++ % stride == 0) cameras.push_back(pose);
+    }
+    if (!cameras.empty()) name_planes(map_, cameras);
+}
+
 /// Brings map_ up to date: only planes that changed are derived anew, with the intersections they are in.
 void PlaneMapper::refresh() {
     std::map<int, MapPlane> before;
@@ -598,6 +616,7 @@ void PlaneMapper::refresh() {
     map_.planes = std::move(planes);
     std::sort(changed.begin(), changed.end());
     refresh_intersections(changed);
+    if (!changed.empty()) name();
 }
 
 void PlaneMapper::refresh_intersections(const std::vector<int>& changed_ids) {

@@ -57,8 +57,10 @@ struct MapOptions {
 /// order in which keyframes came, nor on what the poses were before.
 ///
 /// Merged moments are exact. The plane itself is the fit to them in which each view is weighted by
-/// pose_sigma^2 / (pose_sigma^2 + sigma(z)^2), z being its mean depth. Its shape counts, for each cell, views
-/// (a near one up to four times) and how often the cell was looked through.
+/// pose_sigma^2 / (pose_sigma^2 + sigma(z)^2), z being its mean depth, and less the less it agrees with the
+/// plane so far: what merges by the rules but lies some centimetres off does not pull the plane along. Its
+/// shape counts, for each cell, views (a near one up to four times) and how often the cell was looked
+/// through.
 class PlaneMapper {
   public:
     /// Throws std::invalid_argument for bad options.
@@ -107,6 +109,7 @@ class PlaneMapper {
   private:
     bool is_usable(const PlanarRegion& region) const;
     double weight(const StoredRegion& region) const;
+    Reliability reliability(const StoredRegion& region) const;
     int strength(const StoredRegion& region) const;
     void place(int keyframe_id);
     void integrate(int keyframe_id);
@@ -122,6 +125,7 @@ class PlaneMapper {
     void count_keyframes();
     void refresh();
     bool derive(Surface& surface, std::optional<MapPlane>& plane) const;
+    void name();
     void refresh_intersections(const std::vector<int>& changed_ids);
 
     MapOptions options_;

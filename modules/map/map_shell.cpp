@@ -2,24 +2,32 @@
 #include "map/map_shell.hpp"
 
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
-#include "core/files.hpp"
+#include <stdexcept>
+
+#include "map/map_file.hpp"
 #include "messages/channels.hpp"
 #include "messages/convert.hpp"
 #include "messages/decode.hpp"
-#include "messages/log.hpp"
 
 namespace planemap {
 
 namespace {
 constexpr std::int64_t kWritePeriodUs = 5000000;
-}
+constexpr const char* kFile = "plane_map.lcmlog";
+}  // namespace
 
 MapShell::MapShell(Bus& bus, const MapShellOptions& options)
     : bus_(bus), output_(options.output), mapper_(options.map) {
+    if (!options.start.empty()) mapper_.start_from(read_plane_map(options.start));
     if (!output_.empty()) {
+        // A folder that cannot be written shows now, not after the run. An earlier map stays until there is
+        // one.
         std::filesystem::create_directories(output_);
-        write();  // a folder that cannot be written shows now, not after the run
+        if (!options.start.empty() || !std::filesystem::exists(output_ / kFile)) write();
+        if (::access(output_.c_str(), W_OK) != 0)
+            throw std::runtime_error(output_.string() + ": is no folder that can be written to");
     }
     bus_.subscribe(channels::kKeyframe, status_.guard([this](const RawMessage& m) { on_keyframe(m); }), 256);
     bus_.subscribe(channels::kTrajectory, status_.guard([this](const RawMessage& m) { on_trajectory(m); }),
@@ -38,6 +46,10 @@ void MapShell::on_trajectory(const RawMessage& message) {
         const ModuleStatus::Work work(status_);
         mapper_.update(trajectory);
     }
+    publish();
+}
+
+void MapShell::publish() {
     bus_.publish(channels::kMap, to_message(mapper_.map(), seq_++));
     status_.published();
     status_.set_text(std::to_string(mapper_.map().planes.size()) + " planes");
@@ -50,23 +62,16 @@ int MapShell::poll() {
 }
 
 void MapShell::finish() {
-    if (!output_.empty()) write();
+    const std::size_t rebuilds = mapper_.rebuilds();
+    mapper_.settle();
+    if (mapper_.rebuilds() != rebuilds) publish();
+    if (!output_.empty() && unwritten_) write();
 }
 
 void MapShell::write() {
-    write_file(output_ / "plane_map.lcmlog", plane_map_log(mapper_.map()));
+    write_plane_map(output_ / kFile, mapper_.map());
     last_write_us_ = now_us();
     unwritten_ = false;
-}
-
-std::string plane_map_log(const PlaneMap& map) {
-    const plane_map_t message = to_message(map, 0);
-    LogEvent event;
-    event.utime = map.utime;
-    event.channel = channels::kMap;
-    event.bytes.resize(static_cast<std::size_t>(message.getEncodedSize()));
-    message.encode(event.bytes.data(), 0, message.getEncodedSize());
-    return encode_event(event);
 }
 
 }  // namespace planemap

@@ -11,12 +11,15 @@ namespace planemap {
 
 struct MapShellOptions {
     MapOptions map;
+    std::filesystem::path
+        start;  ///< plane_map.lcmlog to start from, see PlaneMapper::start_from(); empty: none
     /// Folder that plane_map.lcmlog is written to (beside and renamed), every few seconds and at a clean
     /// stop; empty: none.
     std::filesystem::path output;
 };
 
-/// PLANEMAP_KEYFRAME and PLANEMAP_TRAJECTORY to PLANEMAP_MAP.
+/// PLANEMAP_KEYFRAME and PLANEMAP_TRAJECTORY to PLANEMAP_MAP. Throws std::runtime_error naming the file for a
+/// map to start from that cannot be read.
 class MapShell : public Shell {
   public:
     MapShell(Bus& bus, const MapShellOptions& options);
@@ -30,6 +33,7 @@ class MapShell : public Shell {
   private:
     void on_keyframe(const RawMessage& message);
     void on_trajectory(const RawMessage& message);
+    void publish();
     void write();
 
     Bus& bus_;
@@ -40,9 +44,6 @@ class MapShell : public Shell {
     std::int64_t last_write_us_ = 0;
     bool unwritten_ = false;
 };
-
-/// The map as one event of an LCM log, on PLANEMAP_MAP: what plane_map.lcmlog holds, for lcm-logplayer.
-std::string plane_map_log(const PlaneMap& map);
 
 /// Flags for the options, each named --<prefix>NAME.
 void add_flags(Flags& flags, MapOptions& options, const std::string& prefix = "");

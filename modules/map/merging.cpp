@@ -105,12 +105,12 @@ double rms_over(const Corners& corners, const Height& a, const Height& b) {
 
 }  // namespace
 
-double PlaneRelation::score(const MergeRules& rules) const {
+double RegionRelation::score(const MergeRules& rules) const {
     return angle_rad / std::max(rules.angle_rad, 1e-9) + distance_m / std::max(rules.distance_m, 1e-9) +
            gap_m / std::max(rules.gap_m, 1e-9);
 }
 
-PlaneRelation relate(const Plane& plane_a, const Box& box_a, const Plane& plane_b, const Box& box_b) {
+RegionRelation relate(const Plane& plane_a, const Box& box_a, const Plane& plane_b, const Box& box_b) {
     const Eigen::Vector3d both = plane_a.normal + plane_b.normal;
     const Eigen::Vector3d view = both.norm() > 1e-6 ? both.normalized().eval() : plane_a.normal;
     const Eigen::Matrix3d axes = plane_axes(view, box_a.frame_from_box.linear().col(0));
@@ -118,7 +118,7 @@ PlaneRelation relate(const Plane& plane_a, const Box& box_a, const Plane& plane_
     const Corners a = seen_along(axes, origin, box_a), b = seen_along(axes, origin, box_b);
     const Height height_a(axes, origin, plane_a), height_b(axes, origin, plane_b);
 
-    PlaneRelation relation;
+    RegionRelation relation;
     relation.angle_rad = angle_between(plane_a.normal, plane_b.normal);
     const Corners overlap = clipped(b, a);
     if (overlap.count >= 3 && overlap.area() > 1e-9) {
@@ -131,8 +131,8 @@ PlaneRelation relate(const Plane& plane_a, const Box& box_a, const Plane& plane_
     return relation;
 }
 
-std::optional<PlaneRelation> same_plane(const Plane& plane_a, const Box& box_a, const Plane& plane_b,
-                                        const Box& box_b, const MergeRules& rules) {
+std::optional<RegionRelation> same_plane(const Plane& plane_a, const Box& box_a, const Plane& plane_b,
+                                         const Box& box_b, const MergeRules& rules) {
     // The cheap tests first: most pairs fail one of them.
     if (plane_a.normal.dot(plane_b.normal) < std::cos(rules.angle_rad)) return std::nullopt;
     const double reach =
@@ -145,7 +145,7 @@ std::optional<PlaneRelation> same_plane(const Plane& plane_a, const Box& box_a, 
     const double centre = std::abs(plane_a.signed_distance(box_b.frame_from_box.translation()));
     if (centre > rise + rules.distance_m) return std::nullopt;
 
-    const PlaneRelation relation = relate(plane_a, box_a, plane_b, box_b);
+    const RegionRelation relation = relate(plane_a, box_a, plane_b, box_b);
     const bool same = relation.distance_m <= rules.distance_m && relation.gap_m <= rules.gap_m;
     return same ? std::optional(relation) : std::nullopt;
 }

@@ -16,7 +16,7 @@ struct MergeRules {
 };
 
 /// How one plane lies to another.
-struct PlaneRelation {
+struct RegionRelation {
     double angle_rad = 0;   ///< between the normals, in [0, pi]
     double distance_m = 0;  ///< RMS distance between the planes over the overlap of the boxes; of boxes that
                             ///< do not overlap, midway between their nearest points
@@ -29,10 +29,10 @@ struct PlaneRelation {
 /// Compares two regions by planes and boxes. It is symmetric, and it measures where both regions are:
 /// at the origin, two metres of lever arm would turn 2 deg into 7 cm. Both planes are looked at along their
 /// mean normal, so it says something for angles well below a right angle only.
-PlaneRelation relate(const Plane& plane_a, const Box& box_a, const Plane& plane_b, const Box& box_b);
+RegionRelation relate(const Plane& plane_a, const Box& box_a, const Plane& plane_b, const Box& box_b);
 
 /// The relation when all three rules hold, nothing otherwise.
-std::optional<PlaneRelation> same_plane(const Plane& plane_a, const Box& box_a, const Plane& plane_b,
-                                        const Box& box_b, const MergeRules& rules);
+std::optional<RegionRelation> same_plane(const Plane& plane_a, const Box& box_a, const Plane& plane_b,
+                                         const Box& box_b, const MergeRules& rules);
 
 }  // namespace planemap

@@ -19,6 +19,15 @@ Moments scaled(const Moments& moments, double factor) {
     return {factor * moments.count, factor * moments.sum, factor * moments.scatter};
 }
 
+/// Mean square distance of a region's plane to another one, over the region's points.
+double misfit2(const PlacedRegion& region, const Plane& plane) {
+    const Eigen::Vector3d offset = plane.normal - region.plane.normal;
+    const Eigen::Vector3d mean = region.moments.mean();
+    const double tilt = offset.dot(region.moments.covariance() * offset);
+    return std::max(0.0, tilt) +
+           std::pow(plane.signed_distance(mean) - region.plane.signed_distance(mean), 2);
+}
+
 const std::array<Eigen::Vector2d, Extent::kDirections>& directions() {
     static const auto table = [] {
         std::array<Eigen::Vector2d, Extent::kDirections> d;
@@ -57,10 +66,10 @@ std::array<Eigen::Vector2d, Extent::kDirections> Extent::corners() const {
     return corners;
 }
 
-Surface::Surface(const PlacedRegion& region, const FlatPolygon& outline_box, double weight)
+Surface::Surface(const PlacedRegion& region, const FlatPolygon& outline_box, const Reliability& reliability)
     : plane(region.plane), world_from_extent(region.box.frame_from_box) {
     long_axis_ = region.box.frame_from_box.linear().col(0);
-    add(region, outline_box, weight);
+    add(region, outline_box, reliability);
     refit();
 }
 
@@ -92,9 +101,11 @@ Surface::Surface(const MapPlane& map_plane, double cell_m)
     refit();
 }
 
-void Surface::add(const PlacedRegion& region, const FlatPolygon& outline_extent, double weight) {
+void Surface::add(const PlacedRegion& region, const FlatPolygon& outline_extent,
+                  const Reliability& reliability) {
     moments += region.moments;
-    const Moments w = scaled(region.moments, weight);
+    const double agreement = 1 + misfit2(region, plane) / std::pow(2 * reliability.sigma_m, 2);
+    const Moments w = scaled(region.moments, reliability.weight / (agreement * agreement));
     weighted += w;
     facing += w.count * region.plane.normal;
     for (const Eigen::Vector2d& v : outline_extent.vertices) extent.add(v);
@@ -198,7 +209,7 @@ bool SurfaceSet::may_touch(const Bounds& a, const Bounds& b) const {
     return ((a.low.array() <= b.high.array() + gap) && (b.low.array() <= a.high.array() + gap)).all();
 }
 
-std::optional<PlaneRelation> SurfaceSet::relation(const Surface& a, const Surface& b) const {
+std::optional<RegionRelation> SurfaceSet::relation(const Surface& a, const Surface& b) const {
     const double apart = (a.box.frame_from_box.translation() - b.box.frame_from_box.translation()).norm();
     if (apart + a.box.half_extents.norm() + b.box.half_extents.norm() > max_extent_m_) return std::nullopt;
     return same_plane(a.plane, a.box, b.plane, b.box, rules_);

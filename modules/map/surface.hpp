@@ -26,6 +26,13 @@ class Extent {
     std::array<double, kDirections> reach_;  ///< largest p . direction
 };
 
+/// How far a view is to be believed.
+struct Reliability {
+    double weight = 1;  ///< of its points in the fit, before it is compared with the plane
+    double sigma_m =
+        1;  ///< by which a good view may be off; one that is off by twice as much counts a quarter
+};
+
 /// A plane while it grows. World frame.
 struct Surface {
     int id = -1;
@@ -46,12 +53,12 @@ struct Surface {
 
     Surface() = default;
     /// From a region; `outline` has it in world_from_box of the region.
-    Surface(const PlacedRegion& region, const FlatPolygon& outline_box, double weight);
+    Surface(const PlacedRegion& region, const FlatPolygon& outline_box, const Reliability& reliability);
     /// From a plane of a finished map; its outline counts as well supported.
     Surface(const MapPlane& plane, double cell_m);
 
     /// Takes a region in. The plane follows at the next refit(), the box at once.
-    void add(const PlacedRegion& region, const FlatPolygon& outline_extent, double weight);
+    void add(const PlacedRegion& region, const FlatPolygon& outline_extent, const Reliability& reliability);
     /// Takes another surface in; its evidence is resampled.
     void absorb(const Surface& other);
     /// Plane, box and bounds after moments or extent changed.
@@ -90,7 +97,7 @@ class SurfaceSet {
     };
     static Bounds bounds_of(const Surface& surface);
     bool may_touch(const Bounds& a, const Bounds& b) const;
-    std::optional<PlaneRelation> relation(const Surface& a, const Surface& b) const;
+    std::optional<RegionRelation> relation(const Surface& a, const Surface& b) const;
 
     MergeRules rules_;
     double max_extent_m_;

@@ -76,8 +76,8 @@ TEST(Merging, TheTwoSidesOfAWallAreTwoPlanes) {
 TEST(Merging, IsInvariantUnderRigidMotion) {
     const Pose move = make_pose({3, -7, 2}, Eigen::Quaterniond(0.3, 0.5, -0.2, 0.7).normalized());
     const Sheet a = sheet({0, 0, 2}, {0, 0, 1}, 1, 0.5), b = sheet({0.8, 0.3, 2.02}, tilted(3), 0.7, 0.6);
-    const PlaneRelation before = relate(a.plane, a.box, b.plane, b.box);
-    const PlaneRelation after = relate(move * a.plane, move * a.box, move * b.plane, move * b.box);
+    const RegionRelation before = relate(a.plane, a.box, b.plane, b.box);
+    const RegionRelation after = relate(move * a.plane, move * a.box, move * b.plane, move * b.box);
     EXPECT_NEAR(before.angle_rad, after.angle_rad, 1e-9);
     EXPECT_NEAR(before.distance_m, after.distance_m, 1e-9);
     EXPECT_NEAR(before.gap_m, after.gap_m, 1e-9);

@@ -21,7 +21,7 @@ constexpr std::int64_t kEvery = 1000;  // frames a line
 /// CPU time of all modules so far.
 double pipeline_ms(Pipeline& pipeline) {
     return pipeline.decoder().decode_ms().sum() + pipeline.segmentation().status().work_cpu_ms().sum() +
-           pipeline.odometry().status().work_cpu_ms().sum() + pipeline.graph().status().work_cpu_ms().sum() +
+           pipeline.odometry().status().work_cpu_ms().sum() + pipeline.graph()->status().work_cpu_ms().sum() +
            pipeline.map().status().work_cpu_ms().sum();
 }
 
@@ -29,7 +29,7 @@ GrowthPoint point_at(std::int64_t frames, Pipeline& pipeline) {
     const PlaneMapper& mapper = pipeline.map().mapper();
     GrowthPoint point;
     point.frames = frames;
-    point.keyframes = static_cast<int>(pipeline.graph().graph().trajectory().keyframes.size());
+    point.keyframes = static_cast<int>(pipeline.keyframes().keyframes.size());
     point.planes = mapper.map().planes.size();
     point.message_bytes = static_cast<std::size_t>(to_message(mapper.map(), 0).getEncodedSize());
     point.memory_bytes = mapper.memory_bytes();

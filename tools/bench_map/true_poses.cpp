@@ -4,11 +4,11 @@
 #include <Eigen/SVD>
 #include <algorithm>
 
+#include "run/given_poses.hpp"
+
 namespace planemap::bench_map {
 
 namespace {
-
-constexpr std::int64_t kMaxGapUs = 100000;
 
 /// Poses of the keyframes that both know.
 std::vector<std::pair<Pose, Pose>> common(const KeyframeTrajectory& to, const KeyframeTrajectory& from) {
@@ -22,19 +22,6 @@ std::vector<std::pair<Pose, Pose>> common(const KeyframeTrajectory& to, const Ke
 }
 
 }  // namespace
-
-std::optional<Pose> pose_at(const Trajectory& trajectory, std::int64_t utime) {
-    const auto after =
-        std::lower_bound(trajectory.begin(), trajectory.end(), utime,
-                         [](const StampedPose& pose, std::int64_t t) { return pose.utime < t; });
-    if (after == trajectory.end()) return std::nullopt;
-    if (after->utime == utime) return after->world_from_camera;
-    if (after == trajectory.begin()) return std::nullopt;
-    const StampedPose &a = *(after - 1), &b = *after;
-    if (b.utime - a.utime > kMaxGapUs) return std::nullopt;
-    return interpolate(a.world_from_camera, b.world_from_camera,
-                       static_cast<double>(utime - a.utime) / static_cast<double>(b.utime - a.utime));
-}
 
 KeyframeTrajectory at_poses(const std::vector<Keyframe>& keyframes, const Trajectory& trajectory) {
     KeyframeTrajectory poses;

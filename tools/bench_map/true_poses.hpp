@@ -8,9 +8,6 @@
 
 namespace planemap::bench_map {
 
-/// Pose at a time, interpolated between poses at most 0.1 s apart; nothing where there are none.
-std::optional<Pose> pose_at(const Trajectory& trajectory, std::int64_t utime);
-
 /// The keyframes' poses (ids and utimes are read) from a trajectory of the colour camera, at
 /// their utimes by pose_at(); keyframes without one are left out.
 KeyframeTrajectory at_poses(const std::vector<Keyframe>& keyframes, const Trajectory& trajectory);

@@ -19,7 +19,7 @@ namespace {
 
 struct RunOptions {
     std::string input;
-    std::filesystem::path output, camera;
+    std::filesystem::path output, camera, poses;
     bool no_octomap = false, quiet = false, verbose = false;
     std::optional<std::uint64_t> seed;
     PipelineOptions pipeline;
@@ -32,6 +32,14 @@ void add_run_flags(Flags& flags, RunOptions& options) {
     flags.add("o,output", options.output, "Folder for the results; made if it is not there");
     flags.required();
     flags.add("camera", options.camera, "camera.json for a log that does not describe its camera");
+    flags.add(
+        "poses", options.poses,
+        "Trajectory (TUM format, of the colour camera) that keyframes take their poses from, instead of the "
+        "graph's; e.g. groundtruth.txt");
+    flags.add("map", options.pipeline.map.start,
+              "plane_map.lcmlog to start from: its planes keep their ids and grow on. It must be in the "
+              "world frame "
+              "of this run: with --poses theirs, else the first camera's");
     flags.add("seed", options.seed, "Of everything random; the same seed gives the same bytes out");
     flags.add("no-octomap", options.no_octomap, "Do not build the OctoMap to compare with");
     flags.add("q,quiet", options.quiet, "No progress lines");
@@ -58,6 +66,7 @@ int run(RunOptions options) {
     if (options.seed) options.pipeline.segmentation.seed = options.pipeline.odometry.seed = *options.seed;
     options.pipeline.with_octomap = !options.no_octomap;
     if (!options.camera.empty()) options.pipeline.camera = read_camera_file(options.camera);
+    if (!options.poses.empty()) options.pipeline.poses = read_trajectory(options.poses);
     catch_stop_signals();
 
     Bus bus("memq://");
@@ -76,6 +85,10 @@ int run(RunOptions options) {
     progress.end();
     if (stop_requested())
         spdlog::warn("stopped after {} frames; what was mapped so far is written", input->frames());
+    if (const GivenPoses* given = pipeline.given_poses(); given != nullptr && given->missing() > 0) {
+        spdlog::warn("{}: no pose within 0.1 s of {} keyframes, which are not in the map",
+                     options.poses.string(), given->missing());
+    }
     if (!input->complaints().empty()) spdlog::warn("{}", input->complaints());
 
     const nlohmann::ordered_json report =

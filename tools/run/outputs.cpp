@@ -43,13 +43,14 @@ Json stage(const Histogram& ms) {
 }
 
 Json stages(Pipeline& pipeline) {
-    return {{"decode", stage(pipeline.decoder().decode_ms())},
-            {"segmentation", stage(pipeline.segmentation().status().work_ms())},
-            {"odometry", stage(pipeline.odometry().status().work_ms())},
-            {"graph", stage(pipeline.graph().status().work_ms())},
-            {"map", stage(pipeline.map().status().work_ms())},
-            {"octomap",
-             stage(pipeline.octomap() != nullptr ? pipeline.octomap()->status().work_ms() : Histogram())}};
+    return {
+        {"decode", stage(pipeline.decoder().decode_ms())},
+        {"segmentation", stage(pipeline.segmentation().status().work_ms())},
+        {"odometry", stage(pipeline.odometry().status().work_ms())},
+        {"graph", stage(pipeline.graph() != nullptr ? pipeline.graph()->status().work_ms() : Histogram())},
+        {"map", stage(pipeline.map().status().work_ms())},
+        {"octomap",
+         stage(pipeline.octomap() != nullptr ? pipeline.octomap()->status().work_ms() : Histogram())}};
 }
 
 void add_sizes(Pipeline& pipeline, std::int64_t frames, Json& report) {
@@ -119,7 +120,7 @@ Json write_outputs(const std::filesystem::path& folder, const std::string& input
     write_file(folder / "planes.mtl", planes_mtl(map));
     write_file(folder / "planes.glb", planes_glb(map));
     write_file(folder / "floor_plan.geojson", floor_plan_geojson(map, trajectory));
-    write_file(folder / "plane_map.lcmlog", plane_map_log(map));
+    write_plane_map(folder / "plane_map.lcmlog", map);
     write_file(folder / "overhead.svg", overhead_svg(map, trajectory));
     write_file(folder / "map.svg", perspective_svg(map, trajectory));
     if (pipeline.octomap() != nullptr) write_file(folder / "octomap.bt", pipeline.octomap()->builder().bt());
@@ -128,7 +129,7 @@ Json write_outputs(const std::filesystem::path& folder, const std::string& input
     const auto& estimates = pipeline.estimates();
     const auto tracked = std::count_if(estimates.begin(), estimates.end(),
                                        [](const auto& e) { return e.status != TrackingStatus::kLost; });
-    const KeyframeTrajectory& keyframes = pipeline.graph().graph().trajectory();
+    const KeyframeTrajectory& keyframes = pipeline.keyframes();
     Json report;
     report["input"] = input_name;
     report["frames"] = input.frames();

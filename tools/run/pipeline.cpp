@@ -14,8 +14,12 @@ Pipeline::Pipeline(Bus& bus, const PipelineOptions& options)
       decoder_(std::make_shared<FrameDecoder>(bus, options.camera)),
       segmentation_(bus, decoder_, options.segmentation),
       odometry_(bus, decoder_, options.odometry) {
-    if (options.with_graph) graph_ = std::make_unique<GraphShell>(bus, options.graph);
-    if (options.with_graph && options.with_map) map_ = std::make_unique<MapShell>(bus, options.map);
+    if (options.poses) {
+        given_poses_ = std::make_unique<GivenPoses>(bus, *options.poses);
+    } else if (options.with_graph) {
+        graph_ = std::make_unique<GraphShell>(bus, options.graph);
+    }
+    if ((graph_ || given_poses_) && options.with_map) map_ = std::make_unique<MapShell>(bus, options.map);
     if (options.with_octomap) octomap_ = std::make_unique<OctomapShell>(bus, decoder_, options.octomap);
     bus_.subscribe(channels::kOdometry, [this](const RawMessage& message) {
         estimates_.push_back(from_message(decode<odometry_t>(message.bytes)));
@@ -29,13 +33,25 @@ void Pipeline::finish() {
     if (graph_) graph_->finish();
     settle();
     if (map_) map_->finish();
+    settle();
     if (octomap_) octomap_->finish();
     decoder_->clear();
 }
 
+const KeyframeTrajectory& Pipeline::keyframes() const {
+    return given_poses_ ? given_poses_->keyframes() : graph_->graph().trajectory();
+}
+
 Trajectory Pipeline::trajectory() const {
-    const KeyframeTrajectory keyframes = graph_ ? graph_->graph().trajectory() : KeyframeTrajectory();
     Trajectory trajectory;
+    if (given_poses_) {
+        for (const OdometryEstimate& estimate : estimates_) {
+            const auto pose = pose_at(given_poses_->poses(), estimate.pose_utime);
+            if (pose) trajectory.push_back({estimate.pose_utime, *pose});
+        }
+        return trajectory;
+    }
+    const KeyframeTrajectory keyframes = graph_ ? graph_->graph().trajectory() : KeyframeTrajectory();
     for (const OdometryEstimate& estimate : estimates_) {
         if (estimate.status == TrackingStatus::kLost) continue;
         const auto keyframe =

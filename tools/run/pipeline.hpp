@@ -13,6 +13,7 @@
 #include "messages/frame_decoder.hpp"
 #include "octomap/octomap_shell.hpp"
 #include "odometry/odometry_shell.hpp"
+#include "run/given_poses.hpp"
 #include "segmentation/segmentation_shell.hpp"
 
 namespace planemap {
@@ -23,7 +24,8 @@ struct PipelineOptions {
     GraphOptions graph;
     MapShellOptions map;
     OctomapOptions octomap;
-    bool with_graph = true;  ///< without it there is no map either
+    bool with_graph = true;           ///< without it there is no map either
+    std::optional<Trajectory> poses;  ///< instead of the graph's
     bool with_map = true;
     bool with_octomap = true;
     std::optional<CameraInfo> camera;  ///< instead of what the bus says
@@ -44,15 +46,18 @@ class Pipeline {
     const OdometryEstimate* latest() const { return estimates_.empty() ? nullptr : &estimates_.back(); }
     /// One for each frame that reached the odometry, in order.
     const std::vector<OdometryEstimate>& estimates() const { return estimates_; }
+    /// World poses of the keyframes: the graph's, or the given ones. Precondition: one of both.
+    const KeyframeTrajectory& keyframes() const;
     /// World poses of all tracked frames after graph optimisation, at the moments that they are of; without
-    /// a graph their poses in the odom frame.
+    /// a graph their poses in the odom frame, with given poses these.
     Trajectory trajectory() const;
 
     FrameDecoder& decoder() { return *decoder_; }
     SegmentationShell& segmentation() { return segmentation_; }
     OdometryShell& odometry() { return odometry_; }
-    GraphShell& graph() { return *graph_; }  ///< precondition: with_graph
-    MapShell& map() { return *map_; }        ///< precondition: with_graph and with_map
+    GraphShell* graph() { return graph_.get(); }                    ///< nullptr without one
+    const GivenPoses* given_poses() { return given_poses_.get(); }  ///< nullptr without
+    MapShell& map() { return *map_; }  ///< precondition: with_map, and a graph or given poses
     OctomapShell* octomap() { return octomap_.get(); }
 
   private:
@@ -61,6 +66,7 @@ class Pipeline {
     SegmentationShell segmentation_;
     OdometryShell odometry_;
     std::unique_ptr<GraphShell> graph_;
+    std::unique_ptr<GivenPoses> given_poses_;
     std::unique_ptr<MapShell> map_;
     std::unique_ptr<OctomapShell> octomap_;
     std::vector<OdometryEstimate> estimates_;

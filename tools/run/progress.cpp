@@ -29,9 +29,8 @@ void Progress::show(const Input& input, Pipeline& pipeline) {
         input.progress() ? std::to_string(static_cast<int>(100 * *input.progress())) + " %, " : "";
     std::fprintf(stderr, "%sframe %lld, %s%.0f frames/s, %zu planes, %zu keyframes, %s%s",
                  terminal_ ? "\r\033[K" : "", static_cast<long long>(input.frames()), share.c_str(), rate,
-                 pipeline.map().mapper().map().planes.size(),
-                 pipeline.graph().graph().trajectory().keyframes.size(), lost ? "lost" : "tracked",
-                 terminal_ ? "" : "\n");
+                 pipeline.map().mapper().map().planes.size(), pipeline.keyframes().keyframes.size(),
+                 lost ? "lost" : "tracked", terminal_ ? "" : "\n");
     std::fflush(stderr);
     drawn_ = terminal_;
     last_ = now;

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "map/map_file.hpp"
+
+#include <stdexcept>
+
+#include "core/files.hpp"
+#include "messages/channels.hpp"
+#include "messages/convert.hpp"
+#include "messages/decode.hpp"
+#include "messages/log.hpp"
+
+namespace planemap {
+
+std::string plane_map_log(const PlaneMap& map) {
+    const plane_map_t message = to_message(map, 0);
+    LogEvent event;
+    event.utime = map.utime;
+    event.channel = channels::kMap;
+    event.bytes.resize(static_cast<std::size_t>(message.getEncodedSize()));
+    message.encode(event.bytes.data(), 0, message.getEncodedSize());
+    return encode_event(event);
+}
+
+void write_plane_map(const std::filesystem::path& file, const PlaneMap& map) {
+    write_file(file, plane_map_log(map));
+}
+
+PlaneMap read_plane_map(const std::filesystem::path& file) {
+    LogReader log(file);
+    std::vector<std::uint8_t> newest;
+    bool found = false;
+    for (LogEvent event; log.next(event);) {
+        if (event.channel != channels::kMap) continue;
+        newest = std::move(event.bytes);
+        found = true;
+    }
+    if (log.truncated()) throw std::runtime_error(file.string() + ": is cut short");
+    if (log.bytes_skipped() > 0)
+        throw std::runtime_error(file.string() + ": " + std::to_string(log.bytes_skipped()) +
+                                 " bytes of it are no LCM log");
+    if (!found)
+        throw std::runtime_error(file.string() + ": holds no map (nothing on " + channels::kMap + ")");
+    try {
+        return from_message(decode<plane_map_t>(newest));
+    } catch (const MessageError& error) {
+        throw std::runtime_error(file.string() + ": its map is corrupt: " + error.what());
+    }
+}
+
+}  // namespace planemap

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The map as a file: an LCM log of one event, so that lcm-logplayer and lcm-spy read it too.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "core/plane_map.hpp"
+
+namespace planemap {
+
+/// The map as one event of an LCM log, on PLANEMAP_MAP.
+std::string plane_map_log(const PlaneMap& map);
+
+/// Writes plane_map_log() beside the file and renames it, so that the file holds a whole map at any moment.
+/// Throws std::runtime_error naming the file.
+void write_plane_map(const std::filesystem::path& file, const PlaneMap& map);
+
+/// The last map in a log, which may hold other things too. Throws std::runtime_error that names file and
+/// reason if the file cannot be read, holds no map, is cut short, or the map does not make sense.
+PlaneMap read_plane_map(const std::filesystem::path& file);
+
+}  // namespace planemap

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run/given_poses.hpp"
+
+#include <algorithm>
+
+#include "messages/channels.hpp"
+#include "messages/convert.hpp"
+#include "messages/decode.hpp"
+
+namespace planemap {
+
+namespace {
+constexpr std::int64_t kMaxGapUs = 100000;
+}
+
+std::optional<Pose> pose_at(const Trajectory& trajectory, std::int64_t utime) {
+    const auto after =
+        std::lower_bound(trajectory.begin(), trajectory.end(), utime,
+                         [](const StampedPose& pose, std::int64_t t) { return pose.utime < t; });
+    if (after == trajectory.end()) return std::nullopt;
+    if (after->utime == utime) return after->world_from_camera;
+    if (after == trajectory.begin()) return std::nullopt;
+    const StampedPose &a = *(after - 1), &b = *after;
+    if (b.utime - a.utime > kMaxGapUs) return std::nullopt;
+    return interpolate(a.world_from_camera, b.world_from_camera,
+                       static_cast<double>(utime - a.utime) / static_cast<double>(b.utime - a.utime));
+}
+
+GivenPoses::GivenPoses(Bus& bus, Trajectory poses) : bus_(bus), poses_(std::move(poses)) {
+    bus_.subscribe(channels::kKeyframe, [this](const RawMessage& m) { on_keyframe(m); });
+}
+
+void GivenPoses::on_keyframe(const RawMessage& message) {
+    const keyframe_t keyframe = decode<keyframe_t>(message.bytes);
+    const std::optional<Pose> pose = pose_at(poses_, keyframe.utime);
+    if (!pose) {
+        ++missing_;
+        return;
+    }
+    keyframes_.keyframes.push_back({keyframe.id, keyframe.utime, *pose});
+    keyframes_.utime = keyframe.utime;
+    bus_.publish(channels::kTrajectory, to_message(keyframes_, seq_++));
+}
+
+}  // namespace planemap
