@@ -81,16 +81,6 @@ std::uint64_t EvidenceGrid::Cells::at_least(int hits) const {
     return greater | equal;
 }
 
-/// Looked through more often than seen.
-std::uint64_t EvidenceGrid::Cells::refuted() const {
-    std::uint64_t greater = 0, equal = ~std::uint64_t{0};
-    for (std::size_t s = 4; s-- > 0;) {
-        greater |= equal & miss[s] & ~hit[s];
-        equal &= ~(miss[s] ^ hit[s]);
-    }
-    return greater;
-}
-
 /// Adds 2^strength to the counts of the cells; they stay at 15.
 void EvidenceGrid::count(std::array<std::uint64_t, 4>& counts, std::uint64_t cells, int strength) {
     std::uint64_t carry = cells;

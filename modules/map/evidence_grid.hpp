@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -61,11 +63,13 @@ class EvidenceGrid {
     };
     Counts counts(const Eigen::Vector2d& p_grid) const;
 
-    /// Calls `seen_through(p_grid)` once for the middle of each block of 4 x 4 cells of which some have been
-    /// hit less than `below` hits, and where it returns true adds `misses` (1, 2 or 4) to those cells.
-    /// Returns how many cells left the shape by it.
+    /// Calls `seen_through(p_grid)` once for the middle of each block of 4 x 4 cells between low and high of
+    /// which some are part of the shape with less than kBeyondDoubt hits, and where it returns true adds
+    /// 2^strength misses to those cells. Returns how many cells left the shape by it.
     template <typename SeenThrough>
-    int doubt(int below, int strength, const SeenThrough& seen_through);
+    int doubt(const Eigen::Vector2d& low, const Eigen::Vector2d& high, int strength,
+              const SeenThrough& seen_through);
+    static constexpr int kBeyondDoubt = 12;
 
     /// The shape: cells with enough hits and no more misses than hits; slits of up to two cells closed,
     /// slivers of up to two cells left out unless they are well supported. Metres in the grid's x and y; its
@@ -78,7 +82,20 @@ class EvidenceGrid {
         std::array<std::uint64_t, 4> hit{}, miss{};
 
         std::uint64_t at_least(int hits) const;
-        std::uint64_t refuted() const;
+        /// Looked through more often than seen.
+        std::uint64_t refuted() const {
+            std::uint64_t greater = 0, equal = ~std::uint64_t{0};
+            for (std::size_t s = 4; s-- > 0;) {
+                greater |= equal & miss[s] & ~hit[s];
+                equal &= ~(miss[s] ^ hit[s]);
+            }
+            return greater;
+        }
+        /// Part of the shape, but not beyond doubt.
+        std::uint64_t doubtful() const {
+            const std::uint64_t weak = (hit[0] | hit[1] | hit[2] | hit[3]) & ~(hit[3] & hit[2]);
+            return weak == 0 ? 0 : weak & ~refuted();
+        }
     };
 
     void grow(int word_from, int y_from, int word_to, int y_to);
@@ -99,23 +116,33 @@ bool rings_cross(const Outline& outline);
 // ---------------------------------------------------------------------------------------------------------
 
 template <typename SeenThrough>
-int EvidenceGrid::doubt(int below, int strength, const SeenThrough& seen_through) {
+int EvidenceGrid::doubt(const Eigen::Vector2d& low, const Eigen::Vector2d& high, int strength,
+                        const SeenThrough& seen_through) {
+    // Blocks are aligned to the cells' coordinates, whatever part of them is looked at.
+    const double per_cell = 1 / cell_m_;
+    const auto within = [](double value, int from, int to) {
+        return static_cast<int>(
+            std::clamp(std::floor(value), static_cast<double>(from), static_cast<double>(to)));
+    };
+    const int first_row = within(low.y() * per_cell, y0_, y0_ + rows_) & ~3;
+    const int last_row = within(high.y() * per_cell + 1, y0_, y0_ + rows_);
+    const int first_word = within(low.x() * per_cell / 64, word0_, word0_ + words_) - word0_;
+    const int last_word = within(high.x() * per_cell / 64 + 1, word0_, word0_ + words_) - word0_;
     int lost = 0;
-    for (int y = y0_; y < y0_ + rows_; y += 4) {
-        const int y_end = y + 4 < y0_ + rows_ ? y + 4 : y0_ + rows_;
-        for (int w = 0; w < words_; ++w) {
+    for (int block_row = first_row; block_row < last_row; block_row += 4) {
+        const int y = std::max(block_row, y0_), y_end = std::min(block_row + 4, y0_ + rows_);
+        for (int w = first_word; w < last_word; ++w) {
             std::array<std::uint64_t, 4> weak{};
             std::uint64_t any = 0;
             for (int r = y; r < y_end; ++r) {
-                const Cells& c = row(r)[w];
-                weak[static_cast<std::size_t>(r - y)] = c.at_least(1) & ~c.at_least(below) & ~c.refuted();
+                weak[static_cast<std::size_t>(r - y)] = row(r)[w].doubtful();
                 any |= weak[static_cast<std::size_t>(r - y)];
             }
             for (int nibble = 0; any != 0; ++nibble, any >>= 4) {
                 if ((any & 15) == 0) continue;
                 const std::uint64_t block = std::uint64_t{15} << (4 * nibble);
                 const Eigen::Vector2d middle(cell_m_ * (64.0 * (word0_ + w) + 4.0 * nibble + 2.0),
-                                             cell_m_ * (0.5 * (y + y_end)));
+                                             cell_m_ * (block_row + 2.0));
                 if (!seen_through(middle)) continue;
                 for (int r = y; r < y_end; ++r) {
                     Cells& c = row(r)[w];

@@ -22,8 +22,6 @@ constexpr double kMaxCoordinate_m = 1e5;
 constexpr int kCellsOfNote = 16;
 /// A plane whose points moved less keeps its outline and its intersections.
 constexpr double kMoveOfNote_m = 0.001;
-/// Cells with this much evidence are not doubted any more.
-constexpr int kBeyondDoubt = 12;
 /// Said of a shape of which all has to be traced.
 constexpr int kAllCells = 1 << 20;
 /// Hits of a look through a cell: 2^1.
@@ -68,6 +66,7 @@ void MapOptions::validate() const {
     in("noise.quadratic_per_m", noise.quadratic_per_m, 0, 1, "0 to 1");
     in("noise.offset_m", noise.offset_m, -100, 100, "-100 to 100");
     in("pose_sigma_m", pose_sigma_m, 1e-6, 10, "1e-6 to 10");
+    in("agreement_m", agreement_m, 1e-6, 100, "1e-6 to 100");
     in("outline_cell_m", outline_cell_m, 0.005, 1, "0.005 to 1");
     in("outline_tolerance_m", outline_tolerance_m, 0, 1, "0 to 1");
     in("outline_min_ring_m2", outline_min_ring_m2, 0, 100, "0 to 100");
@@ -77,6 +76,7 @@ void MapOptions::validate() const {
     in("adjacency_angle_deg", adjacency_angle_deg, 1, 90, "1 to 90");
     in("adjacency_length_m", adjacency_length_m, 0, 100, "0 to 100");
     in("min_area_m2", min_area_m2, 0, 1e6, "0 to 1e6");
+    in("min_single_m2", min_single_m2, 0, 1e6, "0 to 1e6");
     in("min_keyframes", min_keyframes, 1, 1e6, "1 to 1e6");
     in("moved_m", moved_m, 0, 10, "0 to 10");
     in("moved_deg", moved_deg, 0, 180, "0 to 180");
@@ -194,7 +194,7 @@ double PlaneMapper::weight(const StoredRegion& region) const {
 }
 
 Reliability PlaneMapper::reliability(const StoredRegion& region) const {
-    return {weight(region), std::hypot(options_.pose_sigma_m, options_.noise.sigma(mean_depth(region)))};
+    return {weight(region), std::hypot(options_.agreement_m, options_.noise.sigma(mean_depth(region)))};
 }
 
 /// What a view counts for in the shape: 2^strength.
@@ -274,10 +274,15 @@ void PlaneMapper::look_through(Surface& surface, const StoredKeyframe& keyframe,
         const Plane& beyond = planes[region];
         // Depth of that region along the ray through the point.
         const double depth = -beyond.d / beyond.normal.dot(p) * p.z();
-        const double margin = std::max(options_.see_through_m, 3 * options_.noise.sigma(depth));
+        const double margin = options_.see_through_m + 2 * options_.noise.sigma(depth);
         return depth > p.z() + margin;
     };
-    const int lost = surface.grid.doubt(kBeyondDoubt, kDoubtStrength, seen_through);
+    // Where the plane is within the reach of the view.
+    const double height = normal.dot(origin), reach = keyframe.sight.reach();
+    if (std::abs(height) >= reach) return;
+    const Eigen::Vector2d foot(-x.dot(origin), -y.dot(origin));
+    const Eigen::Vector2d around = Eigen::Vector2d::Constant(std::sqrt(reach * reach - height * height));
+    const int lost = surface.grid.doubt(foot - around, foot + around, kDoubtStrength, seen_through);
     surface.unshown += lost;
     surface.changed = surface.changed || lost > 0;
 }
@@ -576,7 +581,9 @@ bool PlaneMapper::derive(Surface& surface, std::optional<MapPlane>& plane) const
     region.box.half_extents << half, 0;
     region.outline = std::move(outline);
     MapPlane derived(surface.id, region, static_cast<std::size_t>(surface.keyframes));
-    if (derived.area > 0 && static_cast<double>(derived.area) >= options_.min_area_m2) plane = derived;
+    const double least = surface.keyframes < 2 ? options_.min_single_m2 : 0;
+    if (derived.area > 0 && static_cast<double>(derived.area) >= std::max(least, options_.min_area_m2))
+        plane = derived;
     return true;
 }
 

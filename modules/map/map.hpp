@@ -21,20 +21,22 @@ struct MapOptions {
     double merge_gap_m = 0.5;        ///< largest gap between their boxes (section 2.3)
 
     DepthNoise noise;            ///< of the depth sensor: a far, noisy view weighs less in a plane's fit
-    double pose_sigma_m = 0.01;  ///< error of keyframe poses; below it, less sensor noise gains no weight
+    double pose_sigma_m = 0.02;  ///< error of keyframe poses; below it, less sensor noise gains no weight
+    double agreement_m = 0.01;   ///< a view off its plane by much more (and the sensor's noise) loses weight
 
     double outline_cell_m = 0.025;      ///< raster on which a plane's shape is collected
-    double outline_tolerance_m = 0.03;  ///< simplification of the outline
+    double outline_tolerance_m = 0.04;  ///< simplification of the outline
     double outline_min_ring_m2 = 0.01;  ///< smaller parts and holes of an outline are left out
     int outline_min_hits = 1;           ///< evidence a cell needs: 1 for a far view, up to 4 for a near one
-    double see_through_m = 0.1;         ///< a view past a cell by more (and 3 sigma) is evidence against it
+    double see_through_m = 0.05;        ///< a view past a cell by more (and 2 sigma) is evidence against it
 
     double adjacency_gap_m = 0.15;     ///< planes meet where both outlines come this near to the common line
     double adjacency_angle_deg = 15;   ///< flatter pairs get no intersection line
-    double adjacency_length_m = 0.15;  ///< shorter intersection lines are left out
+    double adjacency_length_m = 0.25;  ///< shorter intersection lines are left out
 
-    double min_area_m2 = 0.05;  ///< smaller planes are kept, but are not in map()
-    int min_keyframes = 1;      ///< planes seen by fewer keyframes are kept, but are not in map()
+    double min_area_m2 = 0.05;    ///< smaller planes are kept, but are not in map()
+    double min_single_m2 = 0.25;  ///< the same for planes that only one keyframe saw
+    int min_keyframes = 1;        ///< planes seen by fewer keyframes are kept, but are not in map()
 
     double moved_m = 0.002;     ///< keyframes that moved less than this,
     double moved_deg = 0.05;    ///< and turned less than this, do not cause a rebuild

@@ -16,6 +16,8 @@ void add_flags(Flags& flags, MapOptions& options, const std::string& prefix) {
     flags.add("noise-offset-m", options.noise.offset_m, "depth noise: distance of least noise, metres");
     flags.add("pose-sigma-m", options.pose_sigma_m,
               "error of keyframe poses; below it, less sensor noise gains no weight");
+    flags.add("agreement-m", options.agreement_m,
+              "a view off its plane by much more than this (and the sensor's noise) loses weight");
     flags.add("outline-cell-m", options.outline_cell_m, "raster on which a plane's shape is collected");
     flags.add("outline-tolerance-m", options.outline_tolerance_m, "simplification of the outline");
     flags.add("outline-min-ring-m2", options.outline_min_ring_m2,
@@ -23,12 +25,13 @@ void add_flags(Flags& flags, MapOptions& options, const std::string& prefix) {
     flags.add("outline-min-hits", options.outline_min_hits,
               "evidence a cell needs: 1 for a far view, up to 4 for a near one");
     flags.add("see-through-m", options.see_through_m,
-              "a view past a cell by more than this (and 3 sigma) is evidence against it");
+              "a view past a cell by more than this (and 2 sigma) is evidence against it");
     flags.add("adjacency-gap-m", options.adjacency_gap_m,
               "planes meet where both outlines come this near to the common line");
     flags.add("adjacency-angle-deg", options.adjacency_angle_deg, "flatter pairs get no intersection line");
     flags.add("adjacency-length-m", options.adjacency_length_m, "shorter intersection lines are left out");
     flags.add("min-area-m2", options.min_area_m2, "smaller planes are kept, but are not in map()");
+    flags.add("min-single-m2", options.min_single_m2, "the same for planes that only one keyframe saw");
     flags.add("min-keyframes", options.min_keyframes,
               "planes seen by fewer keyframes are kept, but are not in map()");
     flags.add("moved-m", options.moved_m, "keyframes that moved less than this");

@@ -54,6 +54,7 @@ Sight::Sight(const std::vector<PlanarRegion>& regions) {
             for (const Eigen::Vector2d& v : ring) {
                 const Eigen::Vector3d p = regions[i].box.frame_from_box * Eigen::Vector3d(v.x(), v.y(), 0);
                 in_front = in_front && p.z() > 0.05;
+                reach_ = std::max(reach_, p.norm());
                 seen[i].vertices.emplace_back(p.head<2>() / p.z());
             }
             seen[i].ring_ends.push_back(seen[i].vertices.size());

@@ -53,7 +53,11 @@ class Sight {
         return low_ + Eigen::Vector2d(kWidth / per_cell_.x(), kHeight / per_cell_.y());
     }
 
+    /// Distance from the camera to the farthest of it, metres.
+    double reach() const { return reach_; }
+
   private:
+    double reach_ = 0;
     Eigen::Vector2d low_ = Eigen::Vector2d::Zero(), per_cell_ = Eigen::Vector2d::Ones();
     std::array<std::uint8_t, kWidth* kHeight> cells_ = [] {
         std::array<std::uint8_t, kWidth * kHeight> none{};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench_map/true_poses.hpp"
+#include "run/given_poses.hpp"
 
 #include <gtest/gtest.h>
 
@@ -25,14 +26,14 @@ Keyframe keyframe(int id, std::int64_t utime) {
 }
 
 TEST(TruePoses, AreInterpolatedAndNeverInvented) {
-    EXPECT_TRUE(pose_at(path(), 80000)->isApprox(pose_of(0.2)));
-    EXPECT_TRUE(pose_at(path(), 100000)->isApprox(pose_of(0.25), 1e-6));
-    EXPECT_FALSE(pose_at(path(), -1));
-    EXPECT_FALSE(pose_at(path(), 400001));
-    EXPECT_FALSE(pose_at({}, 0));
+    EXPECT_TRUE(given_pose(path(), 80000)->isApprox(pose_of(0.2)));
+    EXPECT_TRUE(given_pose(path(), 100000)->isApprox(pose_of(0.25), 1e-6));
+    EXPECT_FALSE(given_pose(path(), -1));
+    EXPECT_FALSE(given_pose(path(), 400001));
+    EXPECT_FALSE(given_pose({}, 0));
     Trajectory gap = path();
     gap.erase(gap.begin() + 3, gap.begin() + 6);
-    EXPECT_FALSE(pose_at(gap, 120000));
+    EXPECT_FALSE(given_pose(gap, 120000));
 }
 
 TEST(TruePoses, OfKeyframesThatHaveOne) {

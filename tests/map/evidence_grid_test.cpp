@@ -18,6 +18,11 @@ int add(EvidenceGrid& grid, const Outline& outline, int strength = 0) {
     return grid.add(polygon, strength);
 }
 
+template <typename SeenThrough>
+int doubt(EvidenceGrid& grid, int strength, const SeenThrough& seen_through) {
+    return grid.doubt({-1e9, -1e9}, {1e9, 1e9}, strength, seen_through);
+}
+
 OutlineOptions every_cell() {
     OutlineOptions options;
     options.min_ring_m2 = 0;
@@ -116,17 +121,29 @@ TEST(EvidenceGrid, WhatIsLookedThroughMoreOftenThanSeenGoes) {
     EvidenceGrid grid(Pose::Identity(), 0.025);
     add(grid, Outline{{rectangle_ring(0, 0, 2, 1)}});
     const auto left = [](const Eigen::Vector2d& p) { return p.x() < 1; };
-    EXPECT_EQ(grid.doubt(12, 0, left), 0) << "as often looked through as seen";
+    EXPECT_EQ(doubt(grid, 0, left), 0) << "as often looked through as seen";
     EXPECT_NEAR(area(grid.outline({})), 2, 1e-9);
-    EXPECT_EQ(grid.doubt(12, 0, left), 1600);
+    EXPECT_EQ(doubt(grid, 0, left), 1600);
     EXPECT_NEAR(area(grid.outline({})), 1, 1e-9);
-    EXPECT_EQ(grid.doubt(12, 0, left), 0) << "what is gone is not doubted again";
+    EXPECT_EQ(doubt(grid, 0, left), 0) << "what is gone is not doubted again";
     EXPECT_EQ(grid.counts({0.5, 0.5}).misses, 2);
     EXPECT_EQ(grid.counts({1.5, 0.5}).misses, 0);
     for (int i = 0; i < 3; ++i) add(grid, Outline{{rectangle_ring(0, 0, 2, 1)}}, 2);
     EXPECT_NEAR(area(grid.outline({})), 2, 1e-9) << "seen again, from near";
-    for (int i = 0; i < 30; ++i) grid.doubt(12, 2, left);
+    for (int i = 0; i < 30; ++i) doubt(grid, 2, left);
     EXPECT_NEAR(area(grid.outline({})), 2, 1e-9) << "beyond doubt";
+}
+
+TEST(EvidenceGrid, DoubtsOnlyWhereItIsAskedTo) {
+    const auto always = [](const Eigen::Vector2d&) { return true; };
+    EvidenceGrid whole(Pose::Identity(), 0.025), part = whole;
+    for (EvidenceGrid* grid : {&whole, &part}) add(*grid, Outline{{rectangle_ring(-3, -1, 3, 1)}});
+    doubt(whole, 1, always);
+    EXPECT_TRUE(whole.outline({}).empty());
+    part.doubt({-10, -10}, {10, 0}, 1, always);
+    EXPECT_NEAR(area(part.outline({})), 6, 0.7) << "the upper half is left";
+    EXPECT_FALSE(contains(part.outline({}), {0, -0.5}));
+    EXPECT_EQ(part.doubt({5, 5}, {6, 6}, 1, always), 0);
 }
 
 TEST(EvidenceGrid, OutlinesDoNotCross) {

@@ -97,9 +97,12 @@ TEST(PlaneMapper, MergedPlaneIsTheFitToAllPoints) {
     seen.id = 0;
     seen.regions = {region_of(left, Pose::Identity(), 0.02, 0.003, 1),
                     region_of(right, Pose::Identity(), 0.02, 0.003, 2)};
-    // Both count alike, whatever their depth, when sensor noise is far below the error of poses.
+    // Both count alike, whatever their depth, when poses are off by far more than the sensor, and the planes
+    // by far less than that.
     MapOptions options;
     options.noise = {0, 0, 0};
+    options.pose_sigma_m = 10;
+    options.agreement_m = 100;
     PlaneMapper mapper(options);
     mapper.add(seen, Pose::Identity());
     ASSERT_EQ(mapper.map().planes.size(), 1u);

@@ -8,6 +8,7 @@
 #include "bench_map/true_poses.hpp"
 #include "messages/channels.hpp"
 #include "messages/frame_decoder.hpp"
+#include "run/given_poses.hpp"
 #include "run/input.hpp"
 
 namespace planemap::bench_map {
@@ -80,7 +81,7 @@ std::vector<SurfaceCheck> check_surfaces(const std::string& input_name, std::int
         if (count++ % kEvery != 0) return;
         const auto frame = decoder.decode(message);
         if (!frame) return;
-        const std::optional<Pose> pose = pose_at(truth, frame->utime());
+        const std::optional<Pose> pose = given_pose(truth, frame->utime());
         if (pose) checker.add(frame->depth(), frame->camera(), *pose);
     });
     const std::unique_ptr<Input> input = open_input(input_name, bus, camera);

@@ -9,7 +9,7 @@
 namespace planemap::bench_map {
 
 /// The keyframes' poses (ids and utimes are read) from a trajectory of the colour camera, at
-/// their utimes by pose_at(); keyframes without one are left out.
+/// their utimes by given_pose(); keyframes without one are left out.
 KeyframeTrajectory at_poses(const std::vector<Keyframe>& keyframes, const Trajectory& trajectory);
 
 /// The rigid motion that lays one trajectory's keyframes on another's with least squares over their positions

@@ -13,7 +13,7 @@ namespace {
 constexpr std::int64_t kMaxGapUs = 100000;
 }
 
-std::optional<Pose> pose_at(const Trajectory& trajectory, std::int64_t utime) {
+std::optional<Pose> given_pose(const Trajectory& trajectory, std::int64_t utime) {
     const auto after =
         std::lower_bound(trajectory.begin(), trajectory.end(), utime,
                          [](const StampedPose& pose, std::int64_t t) { return pose.utime < t; });
@@ -32,7 +32,7 @@ GivenPoses::GivenPoses(Bus& bus, Trajectory poses) : bus_(bus), poses_(std::move
 
 void GivenPoses::on_keyframe(const RawMessage& message) {
     const keyframe_t keyframe = decode<keyframe_t>(message.bytes);
-    const std::optional<Pose> pose = pose_at(poses_, keyframe.utime);
+    const std::optional<Pose> pose = given_pose(poses_, keyframe.utime);
     if (!pose) {
         ++missing_;
         return;

@@ -10,7 +10,7 @@
 namespace planemap {
 
 /// Pose at a time, interpolated between poses at most 0.1 s apart; nothing where there are none.
-std::optional<Pose> pose_at(const Trajectory& trajectory, std::int64_t utime);
+std::optional<Pose> given_pose(const Trajectory& trajectory, std::int64_t utime);
 
 /// Stands in for the graph: keyframes take their poses from a trajectory of the colour camera, in its world.
 class GivenPoses {

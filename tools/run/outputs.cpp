@@ -9,6 +9,7 @@
 #include "core/files.hpp"
 #include "evaluate/evaluation.hpp"
 #include "map/export.hpp"
+#include "map/map_file.hpp"
 #include "messages/convert.hpp"
 #include "run/coverage.hpp"
 #include "run/input.hpp"

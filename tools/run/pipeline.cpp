@@ -46,7 +46,7 @@ Trajectory Pipeline::trajectory() const {
     Trajectory trajectory;
     if (given_poses_) {
         for (const OdometryEstimate& estimate : estimates_) {
-            const auto pose = pose_at(given_poses_->poses(), estimate.pose_utime);
+            const auto pose = given_pose(given_poses_->poses(), estimate.pose_utime);
             if (pose) trajectory.push_back({estimate.pose_utime, *pose});
         }
         return trajectory;
