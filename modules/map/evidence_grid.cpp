@@ -2,6 +2,7 @@
 #include "map/evidence_grid.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace planemap {
@@ -199,6 +200,44 @@ void EvidenceGrid::add(const EvidenceGrid& other) {
             }
         }
     }
+}
+
+void EvidenceGrid::doubtful_blocks(const Eigen::Vector2d& low, const Eigen::Vector2d& high,
+                                   std::vector<Block>& blocks) const {
+    // Blocks are aligned to the cells' coordinates, whatever part of them is looked at.
+    const double per_cell = 1 / cell_m_;
+    const auto within = [](double value, int from, int to) {
+        return static_cast<int>(
+            std::clamp(std::floor(value), static_cast<double>(from), static_cast<double>(to)));
+    };
+    const int first_row = within(low.y() * per_cell, y0_, y0_ + rows_) & ~3;
+    const int last_row = within(high.y() * per_cell + 1, y0_, y0_ + rows_);
+    const int first_word = within(low.x() * per_cell / 64, word0_, word0_ + words_) - word0_;
+    const int last_word = within(high.x() * per_cell / 64 + 1, word0_, word0_ + words_) - word0_;
+    for (int y = first_row; y < last_row; y += 4) {
+        for (int w = first_word; w < last_word; ++w) {
+            std::uint64_t any = 0;
+            for (int r = std::max(y, y0_); r < std::min(y + 4, y0_ + rows_); ++r) any |= row(r)[w].doubtful();
+            for (int nibble = 0; any != 0; ++nibble, any >>= 4) {
+                if ((any & 15) == 0) continue;
+                blocks.push_back({{cell_m_ * (64.0 * (word0_ + w) + 4.0 * nibble + 2.0), cell_m_ * (y + 2.0)},
+                                  y,
+                                  w,
+                                  nibble});
+            }
+        }
+    }
+}
+
+int EvidenceGrid::doubt(const Block& block, int strength) {
+    int lost = 0;
+    for (int r = std::max(block.y, y0_); r < std::min(block.y + 4, y0_ + rows_); ++r) {
+        Cells& c = row(r)[block.word];
+        const std::uint64_t cells = c.doubtful() & std::uint64_t{15} << (4 * block.nibble);
+        count(c.miss, cells, strength);
+        lost += std::popcount(cells & c.refuted());
+    }
+    return lost;
 }
 
 EvidenceGrid::Counts EvidenceGrid::counts(const Eigen::Vector2d& p_grid) const {

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <algorithm>
 #include <array>
-#include <bit>
-#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -63,12 +60,16 @@ class EvidenceGrid {
     };
     Counts counts(const Eigen::Vector2d& p_grid) const;
 
-    /// Calls `seen_through(p_grid)` once for the middle of each block of 4 x 4 cells between low and high of
-    /// which some are part of the shape with less than kBeyondDoubt hits, and where it returns true adds
-    /// 2^strength misses to those cells. Returns how many cells left the shape by it.
-    template <typename SeenThrough>
-    int doubt(const Eigen::Vector2d& low, const Eigen::Vector2d& high, int strength,
-              const SeenThrough& seen_through);
+    /// 4 x 4 cells of which some are part of the shape with less than kBeyondDoubt hits.
+    struct Block {
+        Eigen::Vector2d middle;  ///< metres in the grid's x, y
+        int y, word, nibble;     ///< first row, word in a row, which four bits of it
+    };
+    /// Adds those between low and high to the list.
+    void doubtful_blocks(const Eigen::Vector2d& low, const Eigen::Vector2d& high,
+                         std::vector<Block>& blocks) const;
+    /// Adds 2^strength misses to the doubtful cells of a block; returns how many cells left the shape by it.
+    int doubt(const Block& block, int strength);
     static constexpr int kBeyondDoubt = 12;
 
     /// The shape: cells with enough hits and no more misses than hits; slits of up to two cells closed,
@@ -112,48 +113,5 @@ class EvidenceGrid {
 
 /// True when two edges of the rings cross at inner points of both. Touching is not crossing.
 bool rings_cross(const Outline& outline);
-
-// ---------------------------------------------------------------------------------------------------------
-
-template <typename SeenThrough>
-int EvidenceGrid::doubt(const Eigen::Vector2d& low, const Eigen::Vector2d& high, int strength,
-                        const SeenThrough& seen_through) {
-    // Blocks are aligned to the cells' coordinates, whatever part of them is looked at.
-    const double per_cell = 1 / cell_m_;
-    const auto within = [](double value, int from, int to) {
-        return static_cast<int>(
-            std::clamp(std::floor(value), static_cast<double>(from), static_cast<double>(to)));
-    };
-    const int first_row = within(low.y() * per_cell, y0_, y0_ + rows_) & ~3;
-    const int last_row = within(high.y() * per_cell + 1, y0_, y0_ + rows_);
-    const int first_word = within(low.x() * per_cell / 64, word0_, word0_ + words_) - word0_;
-    const int last_word = within(high.x() * per_cell / 64 + 1, word0_, word0_ + words_) - word0_;
-    int lost = 0;
-    for (int block_row = first_row; block_row < last_row; block_row += 4) {
-        const int y = std::max(block_row, y0_), y_end = std::min(block_row + 4, y0_ + rows_);
-        for (int w = first_word; w < last_word; ++w) {
-            std::array<std::uint64_t, 4> weak{};
-            std::uint64_t any = 0;
-            for (int r = y; r < y_end; ++r) {
-                weak[static_cast<std::size_t>(r - y)] = row(r)[w].doubtful();
-                any |= weak[static_cast<std::size_t>(r - y)];
-            }
-            for (int nibble = 0; any != 0; ++nibble, any >>= 4) {
-                if ((any & 15) == 0) continue;
-                const std::uint64_t block = std::uint64_t{15} << (4 * nibble);
-                const Eigen::Vector2d middle(cell_m_ * (64.0 * (word0_ + w) + 4.0 * nibble + 2.0),
-                                             cell_m_ * (block_row + 2.0));
-                if (!seen_through(middle)) continue;
-                for (int r = y; r < y_end; ++r) {
-                    Cells& c = row(r)[w];
-                    const std::uint64_t cells = weak[static_cast<std::size_t>(r - y)] & block;
-                    count(c.miss, cells, strength);
-                    lost += std::popcount(cells & c.refuted());
-                }
-            }
-        }
-    }
-    return lost;
-}
 
 }  // namespace planemap

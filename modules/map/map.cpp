@@ -24,6 +24,8 @@ constexpr int kCellsOfNote = 16;
 constexpr double kMoveOfNote_m = 0.001;
 /// Said of a shape of which all has to be traced.
 constexpr int kAllCells = 1 << 20;
+/// Views that a rebuild looks through a plane with, and more of them for each square metre.
+constexpr double kLooks = 24, kLooksPerM2 = 1;
 /// Hits of a look through a cell: 2^1.
 constexpr int kDoubtStrength = 1;
 
@@ -39,17 +41,6 @@ Outline transformed(const Pose& b_from_a, Outline outline) {
         for (Eigen::Vector2d& v : ring) v = (b_from_a * Eigen::Vector3d(v.x(), v.y(), 0)).head<2>();
     }
     return outline;
-}
-
-/// The planes of a keyframe's regions, camera frame.
-std::vector<Plane> planes_of(const StoredKeyframe& keyframe) {
-    std::vector<Plane> planes;
-    for (const StoredRegion& region : keyframe.regions) {
-        const Eigen::Quaterniond q = Eigen::Quaterniond(region.camera_from_box.cast<double>()).normalized();
-        const Eigen::Vector3d normal = q * Eigen::Vector3d::UnitZ();
-        planes.push_back({normal, -normal.dot(region.center.cast<double>())});
-    }
-    return planes;
 }
 
 }  // namespace
@@ -186,6 +177,15 @@ void PlaneMapper::place(int keyframe_id) {
     fold();
 }
 
+PlaneMapper::View::View(const StoredKeyframe& seen)
+    : keyframe(&seen), camera_from_world(seen.world_from_camera->inverse(Eigen::Isometry)) {
+    for (const StoredRegion& region : seen.regions) {
+        const Eigen::Quaterniond q = Eigen::Quaterniond(region.camera_from_box.cast<double>()).normalized();
+        const Eigen::Vector3d normal = q * Eigen::Vector3d::UnitZ();
+        planes.push_back({normal, -normal.dot(region.center.cast<double>())});
+    }
+}
+
 /// Inverse variance of a view about the plane, relative to a noise-free sensor.
 double PlaneMapper::weight(const StoredRegion& region) const {
     const double sigma = options_.noise.sigma(mean_depth(region));
@@ -243,46 +243,101 @@ void PlaneMapper::integrate(int keyframe_id) {
         set_.update(i);
     }
     merge(grown);
-    const std::vector<Plane> planes = planes_of(keyframe);
-    for (Surface& surface : set_.surfaces()) look_through(surface, keyframe, planes);
+    const View view(keyframe);
+    std::vector<EvidenceGrid::Block> blocks;
+    for (Surface& surface : set_.surfaces()) look_through(surface, view, blocks);
     map_.utime = std::max(map_.utime, keyframe.utime);
 }
 
 /// Counts against a surface's cells that a keyframe saw past them.
-void PlaneMapper::look_through(Surface& surface, const StoredKeyframe& keyframe,
-                               const std::vector<Plane>& planes) const {
-    const Pose camera_from_world = keyframe.world_from_camera->inverse(Eigen::Isometry);
-    const Eigen::Vector3d center = camera_from_world * (0.5 * (surface.low + surface.high));
-    const double radius = 0.5 * (surface.high - surface.low).norm();
-    // Outside the view: behind the camera, or beside its pyramid.
-    if (center.z() < -radius) return;
-    const auto beside = [&](double low, double high, double across) {
-        return low * center.z() - across > radius * std::hypot(1, low) ||
-               across - high * center.z() > radius * std::hypot(1, high);
-    };
-    const Eigen::Vector2d low = keyframe.sight.low(), high = keyframe.sight.high();
-    if (beside(low.x(), high.x(), center.x()) || beside(low.y(), high.y(), center.y())) return;
+void PlaneMapper::look_through(Surface& surface, const View& view,
+                               std::vector<EvidenceGrid::Block>& blocks) const {
+    std::optional<Footprint> footprint = footprint_of(surface, view);
+    if (!footprint) return;
+    blocks.clear();
+    surface.grid.doubtful_blocks(footprint->low, footprint->high, blocks);
+    doubt(surface, view, *footprint, blocks);
+}
 
-    const Pose camera_from_grid = camera_from_world * surface.grid.world_from_grid();
-    const Eigen::Vector3d origin = camera_from_grid.translation(), x = camera_from_grid.linear().col(0),
-                          y = camera_from_grid.linear().col(1), normal = camera_from_grid.linear().col(2);
-    const auto seen_through = [&](const Eigen::Vector2d& p_grid) {
-        const Eigen::Vector3d p = origin + p_grid.x() * x + p_grid.y() * y;
-        const std::uint8_t region = keyframe.sight.region_at(p);
-        if (region == Sight::kNone) return false;
-        if (std::abs(normal.dot(p)) < 0.2 * p.norm()) return false;  // grazing: a pixel is a long strip
-        const Plane& beyond = planes[region];
+/// The same for many keyframes. What is doubtful is looked for once; and as a few looks settle it, of a
+/// thousand views of the same place some are enough: what is looked through grows with the building.
+void PlaneMapper::look_through(Surface& surface, const std::vector<View>& views) const {
+    std::vector<EvidenceGrid::Block> blocks;
+    const Eigen::Vector2d everywhere = Eigen::Vector2d::Constant(1e9);
+    surface.grid.doubtful_blocks(-everywhere, everywhere, blocks);
+    if (blocks.empty()) return;
+    std::vector<std::pair<const View*, Footprint>> near;
+    for (const View& view : views) {
+        if (const auto footprint = footprint_of(surface, view)) near.emplace_back(&view, *footprint);
+    }
+    const double area = 4 * surface.box.half_extents.x() * surface.box.half_extents.y();
+    const std::size_t stride = 1 + near.size() / static_cast<std::size_t>(kLooks + kLooksPerM2 * area);
+    for (std::size_t i = 0; i < near.size(); i += stride)
+        doubt(surface, *near[i].first, near[i].second, blocks);
+}
+
+/// Where on a surface a view may fall; nothing if it does not.
+std::optional<PlaneMapper::Footprint> PlaneMapper::footprint_of(const Surface& surface,
+                                                                const View& view) const {
+    const Sight& sight = view.keyframe->sight;
+    const Eigen::Vector3d center = view.camera_from_world * (0.5 * (surface.low + surface.high));
+    const double radius = 0.5 * (surface.high - surface.low).norm();
+    // Outside the view: behind the camera, beyond its reach, or beside its pyramid.
+    if (center.z() < -radius || center.squaredNorm() > std::pow(radius + sight.reach(), 2))
+        return std::nullopt;
+    const auto beside = [&](double low, double high, double across) {
+        return low * center.z() - across > radius * std::sqrt(1 + low * low) ||
+               across - high * center.z() > radius * std::sqrt(1 + high * high);
+    };
+    const Eigen::Vector2d low = sight.low(), high = sight.high();
+    if (beside(low.x(), high.x(), center.x()) || beside(low.y(), high.y(), center.y())) return std::nullopt;
+    Footprint footprint;
+    footprint.camera_from_grid = view.camera_from_world * surface.grid.world_from_grid();
+    const Eigen::Vector3d origin = footprint.camera_from_grid.translation();
+    const Eigen::Matrix3d& axes = footprint.camera_from_grid.linear();
+    // The pyramid of the view, down to its reach, laid on the plane.
+    const double reach = sight.reach();
+    const Eigen::Vector2d foot(-axes.col(0).dot(origin), -axes.col(1).dot(origin));
+    double height_low = -axes.col(2).dot(origin), height_high = height_low;
+    footprint.low = footprint.high = foot;
+    for (const double u : {low.x(), high.x()}) {
+        for (const double v : {low.y(), high.y()}) {
+            const Eigen::Vector3d corner = axes.transpose() * (reach * Eigen::Vector3d(u, v, 1) - origin);
+            footprint.low = footprint.low.cwiseMin(corner.head<2>());
+            footprint.high = footprint.high.cwiseMax(corner.head<2>());
+            height_low = std::min(height_low, corner.z());
+            height_high = std::max(height_high, corner.z());
+        }
+    }
+    if (height_low > 0 || height_high < 0) return std::nullopt;
+    return footprint;
+}
+
+void PlaneMapper::doubt(Surface& surface, const View& view, const Footprint& footprint,
+                        const std::vector<EvidenceGrid::Block>& blocks) const {
+    const Eigen::Vector3d origin = footprint.camera_from_grid.translation();
+    const Eigen::Vector3d x = footprint.camera_from_grid.linear().col(0),
+                          y = footprint.camera_from_grid.linear().col(1),
+                          normal = footprint.camera_from_grid.linear().col(2);
+    int lost = 0;
+    const auto first =
+        std::lower_bound(blocks.begin(), blocks.end(), footprint.low.y(),
+                         [](const EvidenceGrid::Block& block, double low) { return block.middle.y() < low; });
+    for (auto at = first; at != blocks.end(); ++at) {
+        const EvidenceGrid::Block& block = *at;
+        if (block.middle.x() < footprint.low.x() || block.middle.x() > footprint.high.x()) continue;
+        if (block.middle.y() > footprint.high.y()) break;  // they come row after row
+        const Eigen::Vector3d p = origin + block.middle.x() * x + block.middle.y() * y;
+        const std::uint8_t region = view.keyframe->sight.region_at(p);
+        if (region == Sight::kNone) continue;
+        const double facing = normal.dot(p);
+        if (facing * facing < 0.04 * p.squaredNorm()) continue;  // grazing: a pixel is a long strip
+        const Plane& beyond = view.planes[region];
         // Depth of that region along the ray through the point.
         const double depth = -beyond.d / beyond.normal.dot(p) * p.z();
-        const double margin = options_.see_through_m + 2 * options_.noise.sigma(depth);
-        return depth > p.z() + margin;
-    };
-    // Where the plane is within the reach of the view.
-    const double height = normal.dot(origin), reach = keyframe.sight.reach();
-    if (std::abs(height) >= reach) return;
-    const Eigen::Vector2d foot(-x.dot(origin), -y.dot(origin));
-    const Eigen::Vector2d around = Eigen::Vector2d::Constant(std::sqrt(reach * reach - height * height));
-    const int lost = surface.grid.doubt(foot - around, foot + around, kDoubtStrength, seen_through);
+        if (depth > p.z() + options_.see_through_m + 2 * options_.noise.sigma(depth))
+            lost += surface.grid.doubt(block, kDoubtStrength);
+    }
     surface.unshown += lost;
     surface.changed = surface.changed || lost > 0;
 }
@@ -390,6 +445,7 @@ void PlaneMapper::rebuild() {
         double weight;
         int keyframe;
         std::size_t region;
+        StoredKeyframe* stored;
     };
     std::vector<Entry> entries;
     std::map<int, std::vector<int>> planes_before;
@@ -403,7 +459,7 @@ void PlaneMapper::rebuild() {
             StoredRegion& region = keyframe.regions[i];
             before.push_back(resolved(region.plane));
             region.plane = -1;
-            entries.push_back({weight(region) * static_cast<double>(region.count), id, i});
+            entries.push_back({weight(region) * static_cast<double>(region.count), id, i, &keyframe});
         }
     }
     std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
@@ -421,10 +477,15 @@ void PlaneMapper::rebuild() {
         surface.changed = true;
         surface.unshown = kAllCells;
     }
-    std::vector<std::pair<const Entry*, std::size_t>> joined;
+    struct Joined {
+        const Entry* entry;
+        std::size_t surface;
+        Pose world_from_box;
+    };
+    std::vector<Joined> joined;
     joined.reserve(entries.size());
     for (const Entry& entry : entries) {
-        const StoredKeyframe& keyframe = keyframes_.at(entry.keyframe);
+        const StoredKeyframe& keyframe = *entry.stored;
         const StoredRegion& region = keyframe.regions[entry.region];
         const PlacedRegion placed(*keyframe.world_from_camera, region);
         if (!(placed.box.frame_from_box.translation().norm() <= kMaxCoordinate_m)) continue;
@@ -440,7 +501,7 @@ void PlaneMapper::rebuild() {
             surface.add(placed, polygon_, reliability(region));
             fresh.update(at);
         }
-        joined.emplace_back(&entry, at);
+        joined.push_back({&entry, at, placed.box.frame_from_box});
     }
     std::vector<std::size_t> all;
     for (std::size_t i = 0; i < fresh.surfaces().size(); ++i) {
@@ -455,15 +516,21 @@ void PlaneMapper::rebuild() {
     for (std::size_t i = 0; i < fixed_.size(); ++i) fixed_ids.push_back(set_.surfaces()[now[i]].id);
     unite_fixed(fixed_ids);
 
-    std::vector<std::vector<std::pair<int, std::size_t>>> regions(set_.surfaces().size());
-    for (const auto& [entry, at] : joined) {
-        keyframes_.at(entry->keyframe).regions[entry->region].plane = set_.surfaces()[now[at]].id;
-        regions[now[at]].emplace_back(entry->keyframe, entry->region);
+    std::vector<std::vector<DrawnRegion>> regions(set_.surfaces().size());
+    for (const Joined& j : joined) {
+        j.entry->stored->regions[j.entry->region].plane = set_.surfaces()[now[j.surface]].id;
+        regions[now[j.surface]].push_back({j.entry->stored, j.entry->region, j.world_from_box});
+    }
+    std::vector<View> views;
+    views.reserve(keyframes_.size());
+    for (const auto& [id, keyframe] : keyframes_) {
+        if (keyframe.world_from_camera) views.emplace_back(keyframe);
     }
     // Shapes are independent of each other.
     std::atomic<std::size_t> next{0};
     const auto work = [&] {
-        for (std::size_t i = next++; i < regions.size(); i = next++) draw(set_.surfaces()[i], regions[i]);
+        for (std::size_t i = next++; i < regions.size(); i = next++)
+            draw(set_.surfaces()[i], regions[i], views);
     };
     {
         std::vector<std::jthread> others;
@@ -476,21 +543,18 @@ void PlaneMapper::rebuild() {
 }
 
 /// A rebuilt surface's shape: its regions, and then what all keyframes say against it.
-void PlaneMapper::draw(Surface& surface, const std::vector<std::pair<int, std::size_t>>& regions) {
+void PlaneMapper::draw(Surface& surface, const std::vector<DrawnRegion>& regions,
+                       const std::vector<View>& views) {
     if (surface.grid.empty())
         surface.grid = EvidenceGrid(surface.box.frame_from_box, options_.outline_cell_m);
     const Pose grid_from_world = surface.grid.world_from_grid().inverse(Eigen::Isometry);
     FlatPolygon polygon;
-    for (const auto& [id, i] : regions) {
-        const StoredKeyframe& keyframe = keyframes_.at(id);
-        const StoredRegion& region = keyframe.regions[i];
-        const Pose world_from_box = PlacedRegion(*keyframe.world_from_camera, region).box.frame_from_box;
-        outline_in(grid_from_world * world_from_box, region, keyframe, polygon);
+    for (const DrawnRegion& drawn : regions) {
+        const StoredRegion& region = drawn.keyframe->regions[drawn.region];
+        outline_in(grid_from_world * drawn.world_from_box, region, *drawn.keyframe, polygon);
         surface.grid.add(polygon, strength(region));
     }
-    for (const auto& [id, keyframe] : keyframes_) {
-        if (keyframe.world_from_camera) look_through(surface, keyframe, planes_of(keyframe));
-    }
+    look_through(surface, views);
     surface.unshown = kAllCells;
 }
 

@@ -109,20 +109,42 @@ class PlaneMapper {
     std::size_t rebuilds() const { return rebuilds_; }
 
   private:
+    /// A keyframe in the map as one looks through its eyes.
+    struct View {
+        const StoredKeyframe* keyframe;
+        Pose camera_from_world;
+        std::vector<Plane> planes;  ///< of its regions, camera frame
+
+        explicit View(const StoredKeyframe& seen);
+    };
+    /// Where on a surface's grid a view may fall.
+    struct Footprint {
+        Pose camera_from_grid;
+        Eigen::Vector2d low, high;
+    };
+    /// A region on its way into a surface's shape.
+    struct DrawnRegion {
+        const StoredKeyframe* keyframe;
+        std::size_t region;
+        Pose world_from_box;
+    };
     bool is_usable(const PlanarRegion& region) const;
     double weight(const StoredRegion& region) const;
     Reliability reliability(const StoredRegion& region) const;
     int strength(const StoredRegion& region) const;
     void place(int keyframe_id);
     void integrate(int keyframe_id);
-    void look_through(Surface& surface, const StoredKeyframe& keyframe,
-                      const std::vector<Plane>& planes) const;
+    void look_through(Surface& surface, const View& view, std::vector<EvidenceGrid::Block>& blocks) const;
+    void look_through(Surface& surface, const std::vector<View>& views) const;
+    std::optional<Footprint> footprint_of(const Surface& surface, const View& view) const;
+    void doubt(Surface& surface, const View& view, const Footprint& footprint,
+               const std::vector<EvidenceGrid::Block>& blocks) const;
     void merge(const std::vector<std::size_t>& grown);
     int resolved(int plane_id) const;
     void fold();
     void unite_fixed(const std::vector<int>& ids);
     void rebuild();
-    void draw(Surface& surface, const std::vector<std::pair<int, std::size_t>>& regions);
+    void draw(Surface& surface, const std::vector<DrawnRegion>& regions, const std::vector<View>& views);
     void keep_ids(const std::map<int, std::vector<int>>& planes_before, int first_new_id);
     void count_keyframes();
     void refresh();

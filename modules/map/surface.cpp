@@ -189,6 +189,9 @@ void Surface::rebox() {
     high = box.frame_from_box.translation() + reach;
 }
 
+SurfaceSet::SurfaceSet(const MergeRules& rules, double max_extent_m)
+    : rules_(rules), cosine_(std::cos(rules.angle_rad)), max_extent_m_(max_extent_m) {}
+
 SurfaceSet::Bounds SurfaceSet::bounds_of(const Surface& surface) {
     return {surface.plane.normal, surface.low, surface.high, surface.plane.d};
 }
@@ -204,7 +207,7 @@ void SurfaceSet::update(std::size_t i) {
 }
 
 bool SurfaceSet::may_touch(const Bounds& a, const Bounds& b) const {
-    if (a.normal.dot(b.normal) < std::cos(rules_.angle_rad)) return false;
+    if (a.normal.dot(b.normal) < cosine_) return false;
     const double gap = rules_.gap_m + rules_.distance_m;
     return ((a.low.array() <= b.high.array() + gap) && (b.low.array() <= a.high.array() + gap)).all();
 }

@@ -72,7 +72,7 @@ struct Surface {
 /// Surfaces, none of which is the same plane as another by the merging rules, once merge() was called.
 class SurfaceSet {
   public:
-    SurfaceSet(const MergeRules& rules, double max_extent_m) : rules_(rules), max_extent_m_(max_extent_m) {}
+    SurfaceSet(const MergeRules& rules, double max_extent_m);
 
     /// The surface that a region fits best among those that satisfy the rules, or none().
     std::size_t partner_of(const PlacedRegion& region) const;
@@ -100,6 +100,7 @@ class SurfaceSet {
     std::optional<RegionRelation> relation(const Surface& a, const Surface& b) const;
 
     MergeRules rules_;
+    double cosine_;  ///< of the largest angle
     double max_extent_m_;
     std::vector<Surface> surfaces_;
     std::vector<Bounds> bounds_;

@@ -20,7 +20,12 @@ int add(EvidenceGrid& grid, const Outline& outline, int strength = 0) {
 
 template <typename SeenThrough>
 int doubt(EvidenceGrid& grid, int strength, const SeenThrough& seen_through) {
-    return grid.doubt({-1e9, -1e9}, {1e9, 1e9}, strength, seen_through);
+    std::vector<EvidenceGrid::Block> blocks;
+    grid.doubtful_blocks({-1e9, -1e9}, {1e9, 1e9}, blocks);
+    int lost = 0;
+    for (const EvidenceGrid::Block& block : blocks)
+        if (seen_through(block.middle)) lost += grid.doubt(block, strength);
+    return lost;
 }
 
 OutlineOptions every_cell() {
@@ -140,10 +145,13 @@ TEST(EvidenceGrid, DoubtsOnlyWhereItIsAskedTo) {
     for (EvidenceGrid* grid : {&whole, &part}) add(*grid, Outline{{rectangle_ring(-3, -1, 3, 1)}});
     doubt(whole, 1, always);
     EXPECT_TRUE(whole.outline({}).empty());
-    part.doubt({-10, -10}, {10, 0}, 1, always);
+    std::vector<EvidenceGrid::Block> lower, beyond;
+    part.doubtful_blocks({-10, -10}, {10, -0.1}, lower);
+    for (const EvidenceGrid::Block& block : lower) part.doubt(block, 1);
     EXPECT_NEAR(area(part.outline({})), 6, 0.7) << "the upper half is left";
     EXPECT_FALSE(contains(part.outline({}), {0, -0.5}));
-    EXPECT_EQ(part.doubt({5, 5}, {6, 6}, 1, always), 0);
+    part.doubtful_blocks({5, 5}, {6, 6}, beyond);
+    EXPECT_TRUE(beyond.empty());
 }
 
 TEST(EvidenceGrid, OutlinesDoNotCross) {
