@@ -50,6 +50,32 @@ TEST_F(MapShellTest, PublishesTheMapAmongCorruptMessagesAndWritesItAsALog) {
     EXPECT_FALSE(log.next(event));
 }
 
+TEST_F(MapShellTest, StartsFromAMapAndKeepsAnEarlierOneUntilItHasOne) {
+    MapShellOptions options;
+    options.output = folder_;
+    {
+        MapShell shell(bus_, options);
+        bus_.publish(channels::kKeyframe, to_message(test::sample_keyframe(), 0));
+        bus_.publish(channels::kTrajectory, to_message(trajectory(), 0));
+        bus_.drain();
+        shell.finish();
+    }
+    const std::filesystem::path file = folder_ / "plane_map.lcmlog";
+    const std::string map = read_file(file);
+    {
+        MapShell idle(bus_, options);
+        idle.finish();
+    }
+    EXPECT_EQ(read_file(file), map) << "nothing came, so the earlier map stays";
+    options.start = file;
+    MapShell shell(bus_, options);
+    EXPECT_EQ(shell.mapper().map().planes.size(), 2u);
+    EXPECT_FALSE(shell.mapper().map().lines.size() > 0);
+    write_file(file, map.substr(0, map.size() - 5));
+    EXPECT_THROW(MapShell(bus_, options), std::runtime_error);
+    EXPECT_EQ(shell.mapper().map().planes.size(), 2u);
+}
+
 TEST_F(MapShellTest, AnOutputThatCannotBeWrittenIsAnErrorAtOnce) {
     write_file(folder_.string() + ".file", "x");
     MapShellOptions options;
