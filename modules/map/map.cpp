@@ -26,6 +26,7 @@ constexpr double kMoveOfNote_m = 0.001;
 constexpr int kAllCells = 1 << 20;
 /// Views that a rebuild looks through a plane with, and more of them for each square metre.
 constexpr double kLooks = 24, kLooksPerM2 = 1;
+constexpr std::size_t kMaxWaiting = 4096;
 /// Hits of a look through a cell: 2^1.
 constexpr int kDoubtStrength = 1;
 
@@ -126,7 +127,17 @@ void PlaneMapper::add(const Keyframe& keyframe) {
     } else {
         place(keyframe.id);
     }
+    drop_waiting();
     refresh();
+}
+
+/// Keyframes whose poses never come do not pile up.
+void PlaneMapper::drop_waiting() {
+    for (std::size_t n = waiting(); n > kMaxWaiting; --n) {
+        keyframes_.erase(std::find_if(keyframes_.begin(), keyframes_.end(),
+                                      [](const auto& entry) { return !entry.second.world_from_camera; }));
+        ++dropped_;
+    }
 }
 
 void PlaneMapper::add(const Keyframe& keyframe, const Pose& world_from_camera) {

@@ -99,8 +99,9 @@ class PlaneMapper {
     Moments moments(int plane_id) const;
     /// Ids of the keyframes that saw each plane, ascending, by the plane's id.
     std::map<int, std::vector<int>> sightings() const;
-    /// Keyframes that have no pose yet.
+    /// Keyframes that have no pose yet: at most 4096, then the oldest is dropped.
     std::size_t waiting() const;
+    std::size_t dropped() const { return dropped_; }
     /// Regions left out so far.
     std::size_t rejected() const { return rejected_; }
     /// Keyframes whose regions were folded into the planes (MapOptions::fold_after).
@@ -132,6 +133,7 @@ class PlaneMapper {
     double weight(const StoredRegion& region) const;
     Reliability reliability(const StoredRegion& region) const;
     int strength(const StoredRegion& region) const;
+    void drop_waiting();
     void place(int keyframe_id);
     void integrate(int keyframe_id);
     void look_through(Surface& surface, const View& view, std::vector<EvidenceGrid::Block>& blocks) const;
@@ -162,7 +164,7 @@ class PlaneMapper {
     int next_id_ = 0;
     PlaneMap map_;
     FlatPolygon polygon_;  ///< scratch
-    std::size_t rejected_ = 0, folded_ = 0, rebuilds_ = 0;
+    std::size_t rejected_ = 0, dropped_ = 0, folded_ = 0, rebuilds_ = 0;
     bool settled_ = true;
 };
 

@@ -37,7 +37,9 @@ MapShell::MapShell(Bus& bus, const MapShellOptions& options)
 void MapShell::on_keyframe(const RawMessage& message) {
     const keyframe_t received = decode<keyframe_t>(message.bytes);
     status_.received(static_cast<std::uint32_t>(received.seq));
+    const std::size_t dropped = mapper_.dropped();
     mapper_.add(from_message(received));
+    status_.dropped(static_cast<std::int64_t>(mapper_.dropped() - dropped));
 }
 
 void MapShell::on_trajectory(const RawMessage& message) {

@@ -359,6 +359,119 @@ TEST(PlaneMapper, IntersectionsFollowChangedPlanes) {
     expect_identical(stepwise.map(), at_once.map());
 }
 
+TEST(PlaneMapper, ThreadsDoNotChangeTheResult) {
+    MapOptions one, many;
+    one.threads = 1;
+    many.threads = 5;
+    PlaneMapper alone(one), together(many);
+    for (int i = 0; i < 6; ++i) {
+        const Pose pose = camera_at({0.1 * i, 0, 1}, 0.2 * i);
+        for (PlaneMapper* mapper : {&alone, &together}) mapper->add(keyframe(i, room(), pose, 0.003), pose);
+    }
+    alone.settle();
+    together.settle();
+    EXPECT_EQ(alone.rebuilds(), 1u);
+    expect_identical(alone.map(), together.map());
+}
+
+TEST(PlaneMapper, SettlingTwiceChangesNothing) {
+    PlaneMapper mapper;
+    const Pose pose = camera_at({0, 0, 1});
+    for (int i = 0; i < 3; ++i) mapper.add(keyframe(i, room(), pose, 0.003), pose);
+    mapper.settle();
+    const PlaneMap once = mapper.map();
+    mapper.settle();
+    EXPECT_EQ(mapper.rebuilds(), 1u);
+    expect_identical(once, mapper.map());
+}
+
+TEST(PlaneMapper, WhatIsLookedThroughGoes) {
+    // A plate is seen once, from afar; then the wall behind it, again and again.
+    const Rectangle plate{facing({0, 0, 2.5}, {0, 0, -1}, {1, 0, 0}), 0.5, 0.4, {}};
+    const Rectangle wall{facing({0, 0, 3.5}, {0, 0, -1}, {1, 0, 0}), 2, 1.5, {}};
+    const Pose afar = camera_at({0, 0, -1}), near = camera_at({0, 0, 1});
+    PlaneMapper mapper;
+    mapper.add(keyframe(0, {plate}, afar), afar);
+    ASSERT_EQ(mapper.map().planes.size(), 1u);
+    for (int i = 1; i < 4; ++i) mapper.add(keyframe(i, {wall}, near), near);
+    ASSERT_EQ(mapper.map().planes.size(), 1u);
+    EXPECT_NEAR(static_cast<double>(mapper.map().planes[0].center.z()), 3.5, 0.01) << "the wall is left";
+    mapper.settle();
+    EXPECT_EQ(mapper.map().planes.size(), 1u) << "and a rebuild says the same";
+    // The wall is not looked through by views that see the plate before it.
+    PlaneMapper both;
+    for (int i = 0; i < 4; ++i) both.add(keyframe(i, {plate, wall}, near), near);
+    EXPECT_EQ(both.map().planes.size(), 2u);
+}
+
+TEST(PlaneMapper, FoldedKeyframesStayInThePlanes) {
+    MapOptions options;
+    options.fold_after = 3;
+    PlaneMapper folding(options), keeping;
+    for (int i = 0; i < 12; ++i) {
+        const Pose pose = camera_at({0.05 * i, 0, 1}, 0.1 * i);
+        for (PlaneMapper* mapper : {&folding, &keeping}) mapper->add(keyframe(i, room(), pose, 0.002), pose);
+    }
+    EXPECT_EQ(folding.folded(), 9u);
+    EXPECT_EQ(keeping.folded(), 0u);
+    std::set<int> ids;
+    for (const MapPlane& plane : folding.map().planes) ids.insert(plane.id);
+    folding.settle();
+    keeping.settle();
+    ASSERT_EQ(folding.map().planes.size(), keeping.map().planes.size());
+    for (const MapPlane& plane : folding.map().planes) {
+        EXPECT_TRUE(ids.contains(plane.id));
+        const MapPlane* twin = nearest(keeping.map(), plane);
+        ASSERT_NE(twin, nullptr);
+        EXPECT_NEAR(angle_between(plane.plane().normal, twin->plane().normal), 0, 1e-3);
+        EXPECT_EQ(plane.inliers, twin->inliers) << "every point is still counted";
+        EXPECT_EQ(plane.keyframes, twin->keyframes);
+        EXPECT_NEAR(plane.area, twin->area, 0.03f * twin->area);
+    }
+    EXPECT_EQ(folding.waiting(), 0u);
+}
+
+TEST(PlaneMapper, GoesOnFromAMap) {
+    PlaneMapper before;
+    for (int i = 0; i < 4; ++i) {
+        const Pose pose = camera_at({0.1 * i, 0, 1}, 0.2 * i);
+        before.add(keyframe(i, room(), pose, 0.002), pose);
+    }
+    PlaneMapper after;
+    after.start_from(before.map());
+    ASSERT_EQ(after.map().planes.size(), 5u);
+    for (std::size_t i = 0; i < 5; ++i) {
+        const MapPlane &a = before.map().planes[i], &b = after.map().planes[i];
+        EXPECT_EQ(a.id, b.id);
+        EXPECT_NEAR(angle_between(a.plane().normal, b.plane().normal), 0, 1e-5);
+        EXPECT_NEAR(a.area, b.area, 0.03f * a.area);
+        EXPECT_EQ(a.keyframes, b.keyframes);
+    }
+    const Pose pose = camera_at({0, 0, 1});
+    const Rectangle chair{facing({-1, -0.5, 0.45}, {0, 0, 1}, {1, 0, 0}), 0.3, 0.3, {}};
+    std::vector<Rectangle> with_chair = room();
+    with_chair.push_back(chair);
+    for (int i = 0; i < 2; ++i) after.add(keyframe(i, with_chair, pose, 0.002), pose);
+    after.settle();
+    ASSERT_EQ(after.map().planes.size(), 6u);
+    for (std::size_t i = 0; i < 5; ++i) {
+        EXPECT_EQ(after.map().planes[i].id, before.map().planes[i].id);
+        EXPECT_GT(after.map().planes[i].inliers, 1.4f * before.map().planes[i].inliers);
+    }
+    EXPECT_GT(after.map().planes[5].id, before.map().planes[4].id);
+}
+
+TEST(PlaneMapper, KeyframesThatWaitAreBounded) {
+    PlaneMapper mapper;
+    for (int i = 0; i < 5000; ++i) {
+        Keyframe seen;
+        seen.id = i;
+        mapper.add(seen);
+    }
+    EXPECT_EQ(mapper.waiting(), 4096u);
+    EXPECT_EQ(mapper.dropped(), 904u);
+}
+
 TEST(PlaneMapper, SmallAndSeldomSeenPlanesAreHeldBack) {
     MapOptions options;
     options.min_keyframes = 2;
