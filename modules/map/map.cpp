@@ -18,6 +18,10 @@ namespace {
 constexpr double kRadPerDeg = std::numbers::pi / 180;
 /// Further out, doubles no longer hold second moments to a millimetre.
 constexpr double kMaxCoordinate_m = 1e5;
+/// No depth camera sees a region that reaches further from its middle, nor more of them: a raster takes
+/// memory.
+constexpr double kMaxRegionReach_m = 25;
+constexpr std::size_t kMaxRegions = 256;
 /// An outline is traced again when so many cells came or went, as many as the smallest hole has (0.01 m2).
 constexpr int kCellsOfNote = 16;
 /// A plane whose points moved less keeps its outline and its intersections.
@@ -88,7 +92,7 @@ PlaneMapper::PlaneMapper(MapOptions options)
 /// A valid region whose moments determine a plane, of a size and at a place that a sensor can see.
 bool PlaneMapper::is_usable(const PlanarRegion& region) const {
     if (!is_valid(region) || !fit_plane(region.moments).valid) return false;
-    const double reach = options_.max_extent_m / 2;
+    const double reach = std::min(options_.max_extent_m / 2, kMaxRegionReach_m);
     if (!(region.box.half_extents.norm() <= reach)) return false;
     if (!(region.box.frame_from_box.translation().norm() <= kMaxCoordinate_m)) return false;
     return std::all_of(region.outline.rings.begin(), region.outline.rings.end(), [&](const Ring& ring) {
@@ -111,7 +115,7 @@ void PlaneMapper::start_from(const PlaneMap& map) {
 void PlaneMapper::add(const Keyframe& keyframe) {
     std::vector<PlanarRegion> regions;
     for (const PlanarRegion& region : keyframe.regions) {
-        if (is_usable(region)) {
+        if (regions.size() < kMaxRegions && is_usable(region)) {
             regions.push_back(region);
         } else {
             ++rejected_;
@@ -214,6 +218,25 @@ int PlaneMapper::strength(const StoredRegion& region) const {
     return w > 0.5 ? 2 : w > 0.2 ? 1 : 0;
 }
 
+/// Takes a region into the surface that it fits best, or into a new one; returns which. Its shape is not
+/// drawn.
+std::size_t PlaneMapper::join(SurfaceSet& set, const PlacedRegion& placed, const StoredRegion& region,
+                              const StoredKeyframe& keyframe) {
+    const std::size_t at = set.partner_of(placed);
+    if (at == SurfaceSet::none()) {
+        outline_in(Pose::Identity(), region, keyframe, polygon_);
+        const std::size_t fresh = set.push_back(Surface(placed, polygon_, reliability(region)));
+        set.surfaces()[fresh].id = next_id_++;
+        return fresh;
+    }
+    Surface& surface = set.surfaces()[at];
+    outline_in(surface.world_from_extent.inverse(Eigen::Isometry) * placed.box.frame_from_box, region,
+               keyframe, polygon_);
+    surface.add(placed, polygon_, reliability(region));
+    set.update(at);
+    return at;
+}
+
 void PlaneMapper::integrate(int keyframe_id) {
     StoredKeyframe& keyframe = keyframes_.at(keyframe_id);
     const Pose& world_from_camera = poses_.at(keyframe_id);
@@ -224,21 +247,10 @@ void PlaneMapper::integrate(int keyframe_id) {
         region.plane = -1;
         const PlacedRegion placed(world_from_camera, region);
         if (!(placed.box.frame_from_box.translation().norm() <= kMaxCoordinate_m)) continue;
-        std::size_t at = set_.partner_of(placed);
-        if (at == SurfaceSet::none()) {
-            outline_in(Pose::Identity(), region, keyframe, polygon_);
-            at = set_.push_back(Surface(placed, polygon_, reliability(region)));
-            Surface& fresh = set_.surfaces()[at];
-            fresh.id = next_id_++;
-            fresh.grid = EvidenceGrid(fresh.box.frame_from_box, options_.outline_cell_m);
-        } else {
-            Surface& surface = set_.surfaces()[at];
-            outline_in(surface.world_from_extent.inverse(Eigen::Isometry) * placed.box.frame_from_box, region,
-                       keyframe, polygon_);
-            surface.add(placed, polygon_, reliability(region));
-            set_.update(at);
-        }
+        const std::size_t at = join(set_, placed, region, keyframe);
         Surface& surface = set_.surfaces()[at];
+        if (surface.grid.empty())
+            surface.grid = EvidenceGrid(surface.box.frame_from_box, options_.outline_cell_m);
         outline_in(surface.grid.world_from_grid().inverse(Eigen::Isometry) * placed.box.frame_from_box,
                    region, keyframe, polygon_);
         surface.unshown += surface.grid.add(polygon_, strength(region));
@@ -500,19 +512,7 @@ void PlaneMapper::rebuild() {
         const StoredRegion& region = keyframe.regions[entry.region];
         const PlacedRegion placed(*keyframe.world_from_camera, region);
         if (!(placed.box.frame_from_box.translation().norm() <= kMaxCoordinate_m)) continue;
-        std::size_t at = fresh.partner_of(placed);
-        if (at == SurfaceSet::none()) {
-            outline_in(Pose::Identity(), region, keyframe, polygon_);
-            at = fresh.push_back(Surface(placed, polygon_, reliability(region)));
-            fresh.surfaces()[at].id = next_id_++;
-        } else {
-            Surface& surface = fresh.surfaces()[at];
-            outline_in(surface.world_from_extent.inverse(Eigen::Isometry) * placed.box.frame_from_box, region,
-                       keyframe, polygon_);
-            surface.add(placed, polygon_, reliability(region));
-            fresh.update(at);
-        }
-        joined.push_back({&entry, at, placed.box.frame_from_box});
+        joined.push_back({&entry, join(fresh, placed, region, keyframe), placed.box.frame_from_box});
     }
     std::vector<std::size_t> all;
     for (std::size_t i = 0; i < fresh.surfaces().size(); ++i) {

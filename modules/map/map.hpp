@@ -72,8 +72,9 @@ class PlaneMapper {
     void start_from(const PlaneMap& map);
 
     /// Takes a keyframe; it waits if no trajectory has named its pose yet. Regions that are invalid
-    /// (is_valid(PlanarRegion)), whose moments determine no plane, or that are larger than max_extent_m are
-    /// counted in rejected() and left out. A keyframe with a known id replaces the earlier one.
+    /// (is_valid(PlanarRegion)), whose moments determine no plane, that reach further than 25 m or
+    /// max_extent_m / 2 from their middle, and those after the 256th are counted in rejected() and left out.
+    /// A keyframe with a known id replaces the earlier one.
     void add(const Keyframe& keyframe);
     /// Takes a keyframe with its pose; an invalid pose is ignored and the keyframe waits.
     void add(const Keyframe& keyframe, const Pose& world_from_camera);
@@ -135,6 +136,8 @@ class PlaneMapper {
     int strength(const StoredRegion& region) const;
     void drop_waiting();
     void place(int keyframe_id);
+    std::size_t join(SurfaceSet& set, const PlacedRegion& placed, const StoredRegion& region,
+                     const StoredKeyframe& keyframe);
     void integrate(int keyframe_id);
     void look_through(Surface& surface, const View& view, std::vector<EvidenceGrid::Block>& blocks) const;
     void look_through(Surface& surface, const std::vector<View>& views) const;
