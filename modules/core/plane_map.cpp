@@ -99,7 +99,8 @@ MapPlane::MapPlane(int plane_id, const PlanarRegion& region, std::size_t keyfram
     area = static_cast<float>(planemap::area(outline.rings()));
 }
 
-void MapPlane::lay(const Plane& plane_world, const Eigen::Vector3d& box_center, const Eigen::Vector3d& box_x) {
+void MapPlane::lay(const Plane& plane_world, const Eigen::Vector3d& box_center,
+                   const Eigen::Vector3d& box_x) {
     normal = plane_world.normal.cast<float>();
     center = plane_world.project(box_center).cast<float>();
     const Eigen::Vector3d x = reference_axes(normal.cast<double>().normalized()).transpose() * box_x;

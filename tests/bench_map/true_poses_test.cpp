@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench_map/true_poses.hpp"
-#include "run/given_poses.hpp"
 
 #include <gtest/gtest.h>
+
+#include "run/given_poses.hpp"
 
 namespace planemap::bench_map {
 namespace {

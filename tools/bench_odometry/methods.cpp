@@ -22,7 +22,7 @@ PipelineOptions options_of(const std::string& method, PipelineOptions options) {
 /// The graph's closures, at the moments that its keyframes' poses are of.
 std::vector<Closure> closures_of(Pipeline& pipeline) {
     const auto pose_utime = [&](int id) {
-        const std::vector<KeyframePose>& keyframes = pipeline.graph().graph().trajectory().keyframes;
+        const std::vector<KeyframePose>& keyframes = pipeline.graph()->graph().trajectory().keyframes;
         const auto keyframe =
             std::find_if(keyframes.begin(), keyframes.end(), [&](const auto& k) { return k.id == id; });
         if (keyframe == keyframes.end())
@@ -33,7 +33,7 @@ std::vector<Closure> closures_of(Pipeline& pipeline) {
         return estimate == estimates.end() ? keyframe->utime : estimate->pose_utime;
     };
     std::vector<Closure> closures;
-    for (const LoopClosure& closure : pipeline.graph().graph().loop_closures())
+    for (const LoopClosure& closure : pipeline.graph()->graph().loop_closures())
         closures.push_back({pose_utime(closure.from_id), pose_utime(closure.to_id), closure.from_from_to});
     return closures;
 }
@@ -55,8 +55,8 @@ MethodRun run_planemap(const std::string& input_name, std::int64_t max_frames, c
     run.segmentation = stage_time(pipeline.segmentation().status().work_cpu_ms());
     run.decoding = stage_time(pipeline.decoder().decode_ms());
     if (options.with_graph) {
-        run.graph = stage_time(pipeline.graph().status().work_cpu_ms());
-        run.keyframes = static_cast<int>(pipeline.graph().graph().trajectory().keyframes.size());
+        run.graph = stage_time(pipeline.graph()->status().work_cpu_ms());
+        run.keyframes = static_cast<int>(pipeline.graph()->graph().trajectory().keyframes.size());
         run.closures = closures_of(pipeline);
     }
     return run;
