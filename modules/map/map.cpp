@@ -40,6 +40,11 @@ double rms_to(const Plane& plane, const Moments& moments) {
     return std::sqrt(std::max(0.0, spread) + std::pow(plane.signed_distance(moments.mean()), 2));
 }
 
+/// A pose near enough to the origin for doubles to hold second moments.
+bool is_near(const Pose& world_from_camera) {
+    return is_valid(world_from_camera) && world_from_camera.translation().norm() <= kMaxCoordinate_m;
+}
+
 /// An outline's x, y in frame a, seen along frame b's z in b's x, y.
 Outline transformed(const Pose& b_from_a, Outline outline) {
     for (Ring& ring : outline.rings) {
@@ -95,6 +100,12 @@ bool PlaneMapper::is_usable(const PlanarRegion& region) const {
     const double reach = std::min(options_.max_extent_m / 2, kMaxRegionReach_m);
     if (!(region.box.half_extents.norm() <= reach)) return false;
     if (!(region.box.frame_from_box.translation().norm() <= kMaxCoordinate_m)) return false;
+    // Moments, plane and box say the same.
+    const Eigen::Vector3d mean = region.moments.mean();
+    if (!(region.moments.count <= 1e9)) return false;
+    if (!((mean - region.box.frame_from_box.translation()).norm() <= region.box.half_extents.norm() + 1))
+        return false;
+    if (!(std::abs(region.plane.signed_distance(mean)) <= 1)) return false;
     return std::all_of(region.outline.rings.begin(), region.outline.rings.end(), [&](const Ring& ring) {
         return ring.size() <= 32767 &&
                std::all_of(ring.begin(), ring.end(), [&](const auto& v) { return v.norm() <= reach; });
@@ -103,6 +114,14 @@ bool PlaneMapper::is_usable(const PlanarRegion& region) const {
 
 void PlaneMapper::start_from(const PlaneMap& map) {
     for (const MapPlane& plane : map.planes) {
+        double reach = static_cast<double>(plane.half_extents.norm());
+        for (const std::int16_t steps : plane.outline.packed)
+            reach = std::max(reach, std::abs(static_cast<double>(plane.outline.unit) * steps));
+        if (!(plane.id >= 0 && plane.id < 1 << 30 && reach <= options_.max_extent_m &&
+              static_cast<double>(plane.center.norm()) <= kMaxCoordinate_m)) {
+            ++rejected_;
+            continue;
+        }
         fixed_.emplace_back(plane, options_.outline_cell_m);
         next_id_ = std::max(next_id_, plane.id + 1);
     }
@@ -110,6 +129,9 @@ void PlaneMapper::start_from(const PlaneMap& map) {
     map_.up = map.up;
     rebuild();
     refresh();
+    for (MapPlane& plane : map_.planes) {
+        if (const MapPlane* before = map.find(plane.id)) plane.label = before->label;
+    }
 }
 
 void PlaneMapper::add(const Keyframe& keyframe) {
@@ -145,19 +167,20 @@ void PlaneMapper::drop_waiting() {
 }
 
 void PlaneMapper::add(const Keyframe& keyframe, const Pose& world_from_camera) {
-    if (is_valid(world_from_camera)) poses_[keyframe.id] = world_from_camera;
+    if (is_near(world_from_camera)) poses_[keyframe.id] = world_from_camera;
     add(keyframe);
 }
 
 void PlaneMapper::update(const KeyframeTrajectory& trajectory) {
     bool moved = false;
     for (const KeyframePose& named : trajectory.keyframes) {
-        if (!is_valid(named.world_from_camera)) continue;
+        if (!is_near(named.world_from_camera)) continue;
         poses_[named.id] = named.world_from_camera;
         const auto kept = keyframes_.find(named.id);
         if (kept == keyframes_.end() || !kept->second.world_from_camera) continue;
         const Pose change =
             kept->second.world_from_camera->inverse(Eigen::Isometry) * named.world_from_camera;
+        settled_ = settled_ && kept->second.world_from_camera->isApprox(named.world_from_camera, 0);
         moved = moved || change.translation().norm() > options_.moved_m ||
                 rotation_angle(change) > options_.moved_deg * kRadPerDeg;
     }
@@ -617,9 +640,11 @@ bool PlaneMapper::derive(Surface& surface, std::optional<MapPlane>& plane) const
     region.moments = surface.moments;
     region.rms = rms_to(surface.plane, surface.moments);
     if (plane && surface.unshown < kCellsOfNote) {
-        const Plane before = plane->plane();
+        const auto shape = shapes_.find(surface.id);
+        const Plane before = shape != shapes_.end() ? shape->second.plane : plane->plane();
         const double turn = before.normal.cross(surface.plane.normal).norm();
-        const double shift = std::abs(surface.plane.signed_distance(plane->center.cast<double>()));
+        const Eigen::Vector3d center = before.project(plane->center.cast<double>());
+        const double shift = std::abs(surface.plane.signed_distance(center));
         if (shift + turn * static_cast<double>(plane->half_extents.norm()) < kMoveOfNote_m) {
             plane->move_to(surface.plane);
             plane->keyframes = static_cast<std::int16_t>(std::min(surface.keyframes, 32767));

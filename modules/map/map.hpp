@@ -69,6 +69,7 @@ class PlaneMapper {
     explicit PlaneMapper(MapOptions options = {});
 
     /// Starts from a finished map, in its world frame: its planes keep their ids and grow on. Call it first.
+    /// Planes that are larger than max_extent_m, or further out than 100 km, count in rejected().
     void start_from(const PlaneMap& map);
 
     /// Takes a keyframe; it waits if no trajectory has named its pose yet. Regions that are invalid

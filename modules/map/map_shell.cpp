@@ -25,7 +25,7 @@ MapShell::MapShell(Bus& bus, const MapShellOptions& options)
         // A folder that cannot be written shows now, not after the run. An earlier map stays until there is
         // one.
         std::filesystem::create_directories(output_);
-        if (!options.start.empty() || !std::filesystem::exists(output_ / kFile)) write();
+        if (!std::filesystem::exists(output_ / kFile)) write();
         if (::access(output_.c_str(), W_OK) != 0)
             throw std::runtime_error(output_.string() + ": is no folder that can be written to");
     }

@@ -84,7 +84,7 @@ Surface::Surface(const MapPlane& map_plane, double cell_m)
     const Eigen::Vector2d half = map_plane.half_extents.cast<double>().cwiseMax(0.01);
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
     covariance.diagonal() << half.x() * half.x() / 3, half.y() * half.y() / 3,
-        std::pow(static_cast<double>(map_plane.rms), 2);
+        std::min(std::pow(static_cast<double>(map_plane.rms), 2), 0.01 * std::pow(half.minCoeff(), 2));
     const Eigen::Matrix3d r = world_from_extent.linear();
     const Eigen::Vector3d mean = world_from_extent.translation();
     moments.count = map_plane.inliers;
@@ -133,7 +133,7 @@ void Surface::absorb(const Surface& other) {
     } else {
         grid.add(other.grid);
     }
-    unshown += 1 << 20;
+    unshown = 1 << 20;
     refit();
 }
 
@@ -164,7 +164,7 @@ void Surface::refit() {
         EvidenceGrid turned(level, grid.cell_m());
         turned.add(grid);
         grid = std::move(turned);
-        unshown += 1 << 20;
+        unshown = 1 << 20;
     }
     rebox();
 }
