@@ -86,10 +86,10 @@ void add_judgement(const Judgement& judgement, Figures& f) {
 Figures figures_of(const Row& row) {
     Figures f;
     f.true_poses = row.poses == "true";
-    f.message_kb = static_cast<double>(row.run.message_bytes) / 1000;
+    if (row.run.message_bytes > 0) f.message_kb = static_cast<double>(row.run.message_bytes) / 1000;
     f.memory_per_message =
         static_cast<double>(row.run.memory_bytes) / static_cast<double>(row.run.message_bytes);
-    f.update_ms = row.run.update_median_ms;
+    if (!row.run.poses.keyframes.empty()) f.update_ms = row.run.update_median_ms;
     if (row.judgement) add_judgement(*row.judgement, f);
     if (row.run.coverage) {
         f.leaves_explained = row.run.coverage->leaves_explained;
