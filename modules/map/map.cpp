@@ -135,6 +135,7 @@ void PlaneMapper::start_from(const PlaneMap& map) {
 }
 
 void PlaneMapper::add(const Keyframe& keyframe) {
+    if (keyframe.id <= folded_up_to_) return;  // what it saw is in the planes
     std::vector<PlanarRegion> regions;
     for (const PlanarRegion& region : keyframe.regions) {
         if (regions.size() < kMaxRegions && is_usable(region)) {
@@ -174,7 +175,7 @@ void PlaneMapper::add(const Keyframe& keyframe, const Pose& world_from_camera) {
 void PlaneMapper::update(const KeyframeTrajectory& trajectory) {
     bool moved = false;
     for (const KeyframePose& named : trajectory.keyframes) {
-        if (!is_near(named.world_from_camera)) continue;
+        if (named.id <= folded_up_to_ || !is_near(named.world_from_camera)) continue;
         poses_[named.id] = named.world_from_camera;
         const auto kept = keyframes_.find(named.id);
         if (kept == keyframes_.end() || !kept->second.world_from_camera) continue;
@@ -462,6 +463,10 @@ void PlaneMapper::fold() {
             at->keyframes += at->last_keyframe != id;
             at->last_keyframe = id;
         }
+        const View view(keyframe);
+        std::vector<EvidenceGrid::Block> blocks;
+        for (Surface& fixed : fixed_) look_through(fixed, view, blocks);
+        folded_up_to_ = id;
         poses_.erase(id);
         keyframes_.erase(keyframes_.begin());
         ++folded_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <map>
 #include <optional>
 #include <utility>
@@ -166,6 +167,7 @@ class PlaneMapper {
     std::map<int, int> merged_into_;    ///< plane ids that went up in another one
     std::map<int, PlaneShape> shapes_;  ///< of map_'s planes
     int next_id_ = 0;
+    int folded_up_to_ = std::numeric_limits<int>::min();  ///< keyframes up to this id are folded
     PlaneMap map_;
     FlatPolygon polygon_;  ///< scratch
     std::size_t rejected_ = 0, dropped_ = 0, folded_ = 0, rebuilds_ = 0;
