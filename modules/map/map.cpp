@@ -242,21 +242,42 @@ int PlaneMapper::strength(const StoredRegion& region) const {
     return w > 0.5 ? 2 : w > 0.2 ? 1 : 0;
 }
 
+/// A new surface of one region; nothing is drawn yet.
+Surface PlaneMapper::surface_of(int id, const PlacedRegion& placed, const StoredRegion& region,
+                                const StoredKeyframe& keyframe) {
+    outline_in(Pose::Identity(), region, keyframe, polygon_);
+    Surface surface(placed, polygon_, reliability(region));
+    surface.id = id;
+    return surface;
+}
+
+/// Takes a region into a surface; its shape is not drawn.
+void PlaneMapper::take_in(Surface& surface, const PlacedRegion& placed, const StoredRegion& region,
+                          const StoredKeyframe& keyframe) {
+    outline_in(surface.world_from_extent.inverse(Eigen::Isometry) * placed.box.frame_from_box, region,
+               keyframe, polygon_);
+    surface.add(placed, polygon_, reliability(region));
+}
+
+/// Draws a region that a surface took in, and counts its keyframe.
+void PlaneMapper::draw(Surface& surface, const PlacedRegion& placed, const StoredRegion& region,
+                       const StoredKeyframe& keyframe, int keyframe_id) {
+    if (surface.grid.empty())
+        surface.grid = EvidenceGrid(surface.box.frame_from_box, options_.outline_cell_m);
+    outline_in(surface.grid.world_from_grid().inverse(Eigen::Isometry) * placed.box.frame_from_box, region,
+               keyframe, polygon_);
+    surface.unshown += surface.grid.add(polygon_, strength(region));
+    surface.keyframes += surface.last_keyframe != keyframe_id;
+    surface.last_keyframe = keyframe_id;
+}
+
 /// Takes a region into the surface that it fits best, or into a new one; returns which. Its shape is not
 /// drawn.
 std::size_t PlaneMapper::join(SurfaceSet& set, const PlacedRegion& placed, const StoredRegion& region,
                               const StoredKeyframe& keyframe) {
     const std::size_t at = set.partner_of(placed);
-    if (at == SurfaceSet::none()) {
-        outline_in(Pose::Identity(), region, keyframe, polygon_);
-        const std::size_t fresh = set.push_back(Surface(placed, polygon_, reliability(region)));
-        set.surfaces()[fresh].id = next_id_++;
-        return fresh;
-    }
-    Surface& surface = set.surfaces()[at];
-    outline_in(surface.world_from_extent.inverse(Eigen::Isometry) * placed.box.frame_from_box, region,
-               keyframe, polygon_);
-    surface.add(placed, polygon_, reliability(region));
+    if (at == SurfaceSet::none()) return set.push_back(surface_of(next_id_++, placed, region, keyframe));
+    take_in(set.surfaces()[at], placed, region, keyframe);
     set.update(at);
     return at;
 }
@@ -273,13 +294,7 @@ void PlaneMapper::integrate(int keyframe_id) {
         if (!(placed.box.frame_from_box.translation().norm() <= kMaxCoordinate_m)) continue;
         const std::size_t at = join(set_, placed, region, keyframe);
         Surface& surface = set_.surfaces()[at];
-        if (surface.grid.empty())
-            surface.grid = EvidenceGrid(surface.box.frame_from_box, options_.outline_cell_m);
-        outline_in(surface.grid.world_from_grid().inverse(Eigen::Isometry) * placed.box.frame_from_box,
-                   region, keyframe, polygon_);
-        surface.unshown += surface.grid.add(polygon_, strength(region));
-        surface.keyframes += surface.last_keyframe != keyframe_id;
-        surface.last_keyframe = keyframe_id;
+        draw(surface, placed, region, keyframe, keyframe_id);
         region.plane = surface.id;
         grown.push_back(at);
     }
@@ -448,20 +463,11 @@ void PlaneMapper::fold() {
             auto at = std::find_if(fixed_.begin(), fixed_.end(),
                                    [&](const Surface& s) { return resolved(s.id) == plane_id; });
             if (at == fixed_.end()) {
-                outline_in(Pose::Identity(), region, keyframe, polygon_);
-                at = fixed_.insert(fixed_.end(), Surface(placed, polygon_, reliability(region)));
-                at->id = plane_id;
-                at->grid = EvidenceGrid(at->box.frame_from_box, options_.outline_cell_m);
+                at = fixed_.insert(fixed_.end(), surface_of(plane_id, placed, region, keyframe));
             } else {
-                outline_in(at->world_from_extent.inverse(Eigen::Isometry) * placed.box.frame_from_box, region,
-                           keyframe, polygon_);
-                at->add(placed, polygon_, reliability(region));
+                take_in(*at, placed, region, keyframe);
             }
-            outline_in(at->grid.world_from_grid().inverse(Eigen::Isometry) * placed.box.frame_from_box,
-                       region, keyframe, polygon_);
-            at->grid.add(polygon_, strength(region));
-            at->keyframes += at->last_keyframe != id;
-            at->last_keyframe = id;
+            draw(*at, placed, region, keyframe, id);
         }
         const View view(keyframe);
         std::vector<EvidenceGrid::Block> blocks;
@@ -569,7 +575,7 @@ void PlaneMapper::rebuild() {
     std::atomic<std::size_t> next{0};
     const auto work = [&] {
         for (std::size_t i = next++; i < regions.size(); i = next++)
-            draw(set_.surfaces()[i], regions[i], views);
+            redraw(set_.surfaces()[i], regions[i], views);
     };
     {
         std::vector<std::jthread> others;
@@ -582,8 +588,8 @@ void PlaneMapper::rebuild() {
 }
 
 /// A rebuilt surface's shape: its regions, and then what all keyframes say against it.
-void PlaneMapper::draw(Surface& surface, const std::vector<DrawnRegion>& regions,
-                       const std::vector<View>& views) {
+void PlaneMapper::redraw(Surface& surface, const std::vector<DrawnRegion>& regions,
+                         const std::vector<View>& views) {
     if (surface.grid.empty())
         surface.grid = EvidenceGrid(surface.box.frame_from_box, options_.outline_cell_m);
     const Pose grid_from_world = surface.grid.world_from_grid().inverse(Eigen::Isometry);

@@ -140,6 +140,12 @@ class PlaneMapper {
     void place(int keyframe_id);
     std::size_t join(SurfaceSet& set, const PlacedRegion& placed, const StoredRegion& region,
                      const StoredKeyframe& keyframe);
+    Surface surface_of(int id, const PlacedRegion& placed, const StoredRegion& region,
+                       const StoredKeyframe& keyframe);
+    void take_in(Surface& surface, const PlacedRegion& placed, const StoredRegion& region,
+                 const StoredKeyframe& keyframe);
+    void draw(Surface& surface, const PlacedRegion& placed, const StoredRegion& region,
+              const StoredKeyframe& keyframe, int keyframe_id);
     void integrate(int keyframe_id);
     void look_through(Surface& surface, const View& view, std::vector<EvidenceGrid::Block>& blocks) const;
     void look_through(Surface& surface, const std::vector<View>& views) const;
@@ -151,7 +157,7 @@ class PlaneMapper {
     void fold();
     void unite_fixed(const std::vector<int>& ids);
     void rebuild();
-    void draw(Surface& surface, const std::vector<DrawnRegion>& regions, const std::vector<View>& views);
+    void redraw(Surface& surface, const std::vector<DrawnRegion>& regions, const std::vector<View>& views);
     void keep_ids(const std::map<int, std::vector<int>>& planes_before, int first_new_id);
     void count_keyframes();
     void refresh();
