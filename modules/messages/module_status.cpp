@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "messages/module_status.hpp"
 
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
@@ -45,6 +47,24 @@ void ModuleStatus::received(std::optional<std::uint32_t> seq) {
     if (seq) last_seq_ = seq;
 }
 
+void ModuleStatus::lost(const std::string& what, std::int64_t count) {
+    if (count <= 0) return;
+    std::int64_t& total = losses_[what];
+    std::int64_t threshold = 10;
+    while (threshold <= total) threshold *= 10;
+    total += count;
+    if (total >= threshold) spdlog::warn("{}: lost {} {} so far", module_, total, what);
+}
+
+/// The text with what was lost behind it.
+std::string ModuleStatus::full_text() const {
+    std::string text = text_;
+    for (const auto& [what, count] : losses_) {
+        text += (text.empty() ? "" : "; ") + std::string("lost ") + std::to_string(count) + " " + what;
+    }
+    return text;
+}
+
 ModuleStatus::Work::~Work() {
     const double ms =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
@@ -60,7 +80,7 @@ module_status_t ModuleStatus::message(std::int64_t now_us, bool stopped) const {
     m.utime = now_us;
     m.seq = seq_;
     m.module = module_;
-    m.text = text_;
+    m.text = full_text();
     m.rate_hz = seconds > 0 ? static_cast<double>(inputs) / seconds : 0;
     const Histogram& ms = window_ms_.count() > 0 ? window_ms_ : work_ms_;  // a slow module has quiet seconds
     m.latency_median_ms = static_cast<float>(ms.median());
@@ -102,7 +122,8 @@ std::string ModuleStatus::line() const {
         static_cast<double>(last_.latency_p95_ms), static_cast<long long>(received_),
         static_cast<long long>(published_), static_cast<long long>(dropped_),
         static_cast<long long>(decode_errors_), static_cast<long long>(gaps_));
-    return text_.empty() ? line : std::string(line) + "; " + text_;
+    const std::string text = full_text();
+    return text.empty() ? line : std::string(line) + "; " + text;
 }
 
 }  // namespace planemap

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <planemap/module_status_t.hpp>
 #include <string>
@@ -30,6 +31,11 @@ class ModuleStatus {
     void published() { ++published_; }
     void dropped(std::int64_t count = 1) { dropped_ += count; }
     void decode_error() { ++decode_errors_; }
+    /// Something of an input was not used, e.g. lost("regions out of range", 3). `what` is one of a fixed few
+    /// plain words of the module, plural, without figures. Shown in the status, warned of at 10, 100, 1000
+    /// and so on, and told by planemap-run's report. An input that is dropped as a whole counts in dropped()
+    /// too.
+    void lost(const std::string& what, std::int64_t count = 1);
     /// What keeps the module from working, or what it found; shown in the status line.
     void set_text(std::string text) { text_ = std::move(text); }
 
@@ -51,6 +57,8 @@ class ModuleStatus {
     std::int64_t received_count() const { return received_; }
     std::int64_t dropped_count() const { return dropped_; }
     std::int64_t decode_error_count() const { return decode_errors_; }
+    /// What was lost since the start, by its reason.
+    const std::map<std::string, std::int64_t>& losses() const { return losses_; }
     /// Milliseconds of work for each input since the start.
     const Histogram& work_ms() const { return work_ms_; }
     /// The same in CPU time of the thread that worked: what a busy machine does not lengthen.
@@ -64,9 +72,11 @@ class ModuleStatus {
 
   private:
     module_status_t message(std::int64_t now_us, bool stopped) const;
+    std::string full_text() const;
 
     std::string module_, channel_, text_;
     std::int64_t received_ = 0, published_ = 0, dropped_ = 0, decode_errors_ = 0, gaps_ = 0;
+    std::map<std::string, std::int64_t> losses_;
     std::optional<std::uint32_t> last_seq_;
     Histogram work_ms_, work_cpu_ms_, window_ms_;
     std::int64_t window_start_us_ = 0, window_received_ = 0, window_published_ = 0;

@@ -73,6 +73,20 @@ TEST_F(Status, StatesFollowTheWork) {
     EXPECT_EQ(at(5, true).state, module_status_t::STOPPED);
 }
 
+TEST_F(Status, TellsWhatWasLost) {
+    status_.set_text("well");
+    status_.lost("regions out of range", 3);
+    status_.lost("keyframes without a frame");
+    status_.lost("regions out of range", 4);
+    status_.lost("nothing", 0);
+    at(1);
+    const module_status_t m = at(2);
+    EXPECT_EQ(m.text, "well; lost 1 keyframes without a frame; lost 7 regions out of range");
+    EXPECT_EQ(m.dropped, 0);
+    EXPECT_NE(status_.line().find("lost 7 regions out of range"), std::string::npos) << status_.line();
+    EXPECT_EQ(status_.losses().size(), 2u);
+}
+
 TEST_F(Status, OnceASecond) {
     EXPECT_FALSE(status_.publish_if_due(bus_, 1000000));
     EXPECT_FALSE(status_.publish_if_due(bus_, 1900000));
