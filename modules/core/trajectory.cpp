@@ -2,56 +2,12 @@
 #include "core/trajectory.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
-#include <sstream>
-#include <stdexcept>
+#include <cstdlib>
 
 #include "core/files.hpp"
 
 namespace planemap {
-
-namespace {
-
-constexpr double kMaxSeconds = 9e12;  // microseconds fit 64 bits
-
-}  // namespace
-
-Trajectory read_trajectory(const std::filesystem::path& file) {
-    std::istringstream in(read_file(file));
-    Trajectory trajectory;
-    std::string line;
-    for (int number = 1; std::getline(in, line); ++number) {
-        const auto start = line.find_first_not_of(" \t\r");
-        if (start == std::string::npos || line[start] == '#') continue;
-        std::replace(line.begin(), line.end(), ',', ' ');
-        std::istringstream fields(line);
-        double v[8];
-        for (double& value : v) {
-            std::string text;
-            fields >> text;
-            char* end = nullptr;
-            value = std::strtod(text.c_str(), &end);
-            if (text.empty() || end != text.c_str() + text.size() || !std::isfinite(value)) {
-                throw std::runtime_error(file.string() + ":" + std::to_string(number) +
-                                         ": expected eight finite numbers: timestamp tx ty tz qx qy qz qw");
-            }
-        }
-        const Eigen::Quaterniond q(v[7], v[4], v[5], v[6]);
-        if (!(q.norm() > 1e-3 && q.norm() < 1e3)) {
-            throw std::runtime_error(file.string() + ":" + std::to_string(number) +
-                                     ": the quaternion is not of unit length");
-        }
-        if (std::abs(v[0]) > kMaxSeconds) {
-            throw std::runtime_error(file.string() + ":" + std::to_string(number) +
-                                     ": the timestamp is beyond the range of microseconds in 64 bits");
-        }
-        trajectory.push_back({std::llround(v[0] * 1e6), make_pose({v[1], v[2], v[3]}, q)});
-    }
-    std::stable_sort(trajectory.begin(), trajectory.end(),
-                     [](const auto& a, const auto& b) { return a.utime < b.utime; });
-    return trajectory;
-}
 
 void write_trajectory(const std::filesystem::path& file, const Trajectory& trajectory) {
     std::string text = "# timestamp tx ty tz qx qy qz qw (seconds, world_from_camera, metres)\n";
@@ -68,6 +24,19 @@ void write_trajectory(const std::filesystem::path& file, const Trajectory& traje
         text += line;
     }
     write_file(file, text);
+}
+
+std::optional<Pose> pose_at(const Trajectory& trajectory, std::int64_t utime, std::int64_t max_gap_us) {
+    const auto after =
+        std::lower_bound(trajectory.begin(), trajectory.end(), utime,
+                         [](const StampedPose& pose, std::int64_t t) { return pose.utime < t; });
+    if (after == trajectory.end()) return std::nullopt;
+    if (after->utime == utime) return after->world_from_camera;
+    if (after == trajectory.begin()) return std::nullopt;
+    const StampedPose &a = *(after - 1), &b = *after;
+    if (b.utime - a.utime > max_gap_us) return std::nullopt;
+    return interpolate(a.world_from_camera, b.world_from_camera,
+                       static_cast<double>(utime - a.utime) / static_cast<double>(b.utime - a.utime));
 }
 
 }  // namespace planemap

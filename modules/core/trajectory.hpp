@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "core/pose.hpp"
@@ -11,14 +12,17 @@ namespace planemap {
 /// Poses in order of time.
 using Trajectory = std::vector<StampedPose>;
 
-/// Reads a TUM trajectory: lines `timestamp tx ty tz qx qy qz qw` (seconds, world_from_camera, metres), #
-/// comments and blank lines skipped. Throws std::runtime_error naming file, line and reason for a file that
-/// cannot be read, a line with fewer than eight numbers, a non-finite value, a quaternion far from
-/// unit length or a timestamp beyond 64 bits of microseconds. The result is sorted by time.
+/// Reads a trajectory with timestamps, world_from_camera in metres, in TUM's form or another that
+/// read_trajectory_file() knows. Throws std::runtime_error naming file, line and reason; also for KITTI's
+/// form, which has no timestamps. The result is sorted by time.
 Trajectory read_trajectory(const std::filesystem::path& file);
 
 /// Writes a TUM trajectory (timestamps with six decimals, values with seven, beside and renamed, so a reader
 /// never sees half a file). Throws std::runtime_error naming the file.
 void write_trajectory(const std::filesystem::path& file, const Trajectory& trajectory);
+
+/// The pose at a time: the trajectory's own, or interpolated between the two around it if they are at most
+/// max_gap_us apart; nothing elsewhere. Sorted input.
+std::optional<Pose> pose_at(const Trajectory& trajectory, std::int64_t utime, std::int64_t max_gap_us);
 
 }  // namespace planemap

@@ -87,6 +87,21 @@ TEST(Trajectory, HostileLinesAreNamed) {
     EXPECT_THAT(error_of(folder, std::string("1 0 0\0 0 0 0 0 1\n", 18)), HasSubstr("t.txt:1:"));
 }
 
+TEST(PoseAt, InterpolatesOnlyOverSmallGaps) {
+    const auto at = [](std::int64_t utime, double x) {
+        return StampedPose{utime, make_pose({x, 0, 0}, Eigen::Quaterniond::Identity())};
+    };
+    const Trajectory trajectory{at(100, 0), at(200, 1), at(400, 2)};
+    EXPECT_NEAR(pose_at(trajectory, 150, 100).value().translation().x(), 0.5, 1e-12);
+    EXPECT_EQ(pose_at(trajectory, 200, 100).value().translation().x(), 1);
+    EXPECT_EQ(pose_at(trajectory, 400, 100).value().translation().x(), 2);
+    EXPECT_FALSE(pose_at(trajectory, 300, 100)) << "the two around it are 200 apart";
+    EXPECT_TRUE(pose_at(trajectory, 300, 200));
+    EXPECT_FALSE(pose_at(trajectory, 99, 1000)) << "nothing is carried on beyond the ends";
+    EXPECT_FALSE(pose_at(trajectory, 401, 1000));
+    EXPECT_FALSE(pose_at({}, 1, 1000));
+}
+
 TEST(Trajectory, MissingFileIsNamed) {
     const TemporaryFolder folder;
     try {

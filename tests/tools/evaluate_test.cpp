@@ -244,9 +244,70 @@ TEST(RelativeError, LeavesOutPairsFarFromTheTruthInTime) {
     const auto all = relative_error(estimate, estimate, {1, DeltaUnit::frames}, {});
     const auto gap = relative_error(truth, estimate, {1, DeltaUnit::frames}, {});
     ASSERT_TRUE(all && gap);
-    // The gap hides 30 poses, of which two at either end are within two intervals of a truth pose.
+    // 31 pairs begin or end in the gap; a truth pose of another frame is no truth for them.
     EXPECT_EQ(all->metres.count, 88u);
-    EXPECT_EQ(gap->metres.count, 88u - 27u);
+    EXPECT_EQ(all->left_out, 0u);
+    EXPECT_EQ(gap->metres.count, 88u - 31u);
+    EXPECT_EQ(gap->left_out, 31u);
+}
+
+/// A camera that moves fast and a perfect estimate of it at 30 Hz; the truth at other moments.
+TEST(RelativeError, TruthAtOtherMomentsIsInterpolatedWhereItIsDense) {
+    const auto pose_at_time = [](double t) {
+        return make_pose({t, 0, 0}, Eigen::Quaterniond(Eigen::AngleAxisd(0.5 * t, Eigen::Vector3d::UnitY())));
+    };
+    const auto sampled = [&](double rate, double from) {
+        Trajectory trajectory;
+        for (double t = from; t < 10; t += 1 / rate)
+            trajectory.push_back({std::llround(t * 1e6), pose_at_time(t)});
+        return trajectory;
+    };
+    const Trajectory estimate = sampled(30, 0.5);
+    for (const double rate : {11.0, 25.0, 30.0, 100.0}) {
+        const auto error = relative_error(sampled(rate, 0.01), estimate, {1, DeltaUnit::frames}, {});
+        ASSERT_TRUE(error) << rate;
+        EXPECT_GT(error->metres.count, 250u) << rate;
+        // A frame is 33 mm of way; the nearest pose of a truth at 11 Hz is up to 45 mm away. Poses
+        // within 5 ms (5 mm) are taken as they are, as the benchmark's tool does.
+        EXPECT_LT(error->metres.rmse, 0.005) << rate;
+    }
+    const Trajectory sparse = sampled(1, 0.01);
+    EXPECT_FALSE(relative_error(sparse, estimate, {1, DeltaUnit::frames}, {}));
+    const Evaluation evaluation = evaluate(sparse, estimate, {});
+    EXPECT_TRUE(evaluation.ate);
+    EXPECT_FALSE(evaluation.rpe_frame);
+    EXPECT_THAT(evaluation.why_no_rpe_frame, testing::HasSubstr("poses 1 s apart"));
+    // Frames that the sparse truth has poses of are compared over one second all the same.
+    const Evaluation same_moments = evaluate(sampled(1, 0.5), estimate, {});
+    ASSERT_TRUE(same_moments.rpe_1s);
+    EXPECT_LT(same_moments.rpe_1s->metres.rmse, 1e-5);
+    EXPECT_GT(same_moments.rpe_1s->left_out, 200u);
+}
+
+TEST(RelativeError, SaysWhyItIsMissing) {
+    const Trajectory truth = walk(90, 6);
+    Trajectory later = truth;
+    for (StampedPose& pose : later) pose.utime += 1000000000;
+    EXPECT_THAT(why_no_relative_error(truth, later, {1, DeltaUnit::frames}),
+                testing::HasSubstr("no poses at the estimate's times"));
+    EXPECT_EQ(why_no_relative_error(truth, truth, {100, DeltaUnit::seconds}), "too few pairs that far apart");
+    EXPECT_EQ(why_no_relative_error({}, truth, {}), "too few pairs that far apart");
+}
+
+TEST(Evaluate, ByIndexWithoutTimestamps) {
+    const Trajectory truth = walk(60, 11);
+    Trajectory estimate = moved(truth, some_motion());
+    for (StampedPose& pose : estimate) pose.utime = 0;
+    const Evaluation evaluation = evaluate_by_index(truth, estimate, {.max_difference_s = 5});
+    ASSERT_TRUE(evaluation.ate && evaluation.rpe_frame);
+    EXPECT_EQ(evaluation.pairs, 60u);
+    expect_all_near(evaluation.ate->metres, 0.0, 1e-9);
+    expect_all_near(evaluation.rpe_frame->metres, 0.0, 1e-9);
+    EXPECT_EQ(evaluation.rpe_frame->metres.count, evaluate(truth, truth, {}).rpe_frame->metres.count);
+    EXPECT_FALSE(evaluation.rpe_1s);
+    EXPECT_THAT(evaluation.why_no_rpe_1s, testing::HasSubstr("no timestamps"));
+    estimate.pop_back();
+    EXPECT_THROW(evaluate_by_index(truth, estimate, {}), std::invalid_argument);
 }
 
 TEST(RelativeError, RotationUnits) {

@@ -5,9 +5,12 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 #include <numeric>
 #include <span>
+#include <stdexcept>
+#include <string>
 #include <tuple>
 
 #include "core/validation.hpp"
@@ -17,6 +20,7 @@ namespace planemap {
 namespace {
 
 constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
+constexpr std::int64_t kSameMomentUs = 5000, kMaxTruthGapUs = 100000;
 
 std::int64_t microseconds(double seconds) {
     return std::llround(seconds * 1e6);
@@ -51,8 +55,8 @@ std::vector<double> stamps_of(const Trajectory& trajectory) {
 }
 
 /// Motion from pose a to pose b as evaluate_rpe.py's ominus(b, a) writes it: camera b from camera a.
-Pose relative_motion(const StampedPose& a, const StampedPose& b) {
-    return b.world_from_camera.inverse() * a.world_from_camera;
+Pose relative_motion(const Pose& world_from_a, const Pose& world_from_b) {
+    return world_from_b.inverse() * world_from_a;
 }
 
 /// For each pose how far along the trajectory it is: microseconds, metres, radians, degrees or poses.
@@ -62,7 +66,7 @@ std::vector<double> distances_along(const Trajectory& trajectory, DeltaUnit unit
     double distance = 0.0;
     for (const StampedPose& pose : trajectory) {
         const StampedPose& previous = distances.empty() ? pose : trajectory[distances.size() - 1];
-        const Pose motion = relative_motion(previous, pose);
+        const Pose motion = relative_motion(previous.world_from_camera, pose.world_from_camera);
         if (unit == DeltaUnit::metres) distance += motion.translation().norm();
         if (unit == DeltaUnit::radians) distance += rotation_angle(motion);
         if (unit == DeltaUnit::degrees) distance += rotation_angle(motion) * degrees_per_radian;
@@ -94,6 +98,14 @@ double median_interval(const std::vector<double>& stamps) {
     for (std::size_t i = 1; i < stamps.size(); ++i) intervals.push_back(stamps[i] - stamps[i - 1]);
     std::sort(intervals.begin(), intervals.end());
     return median_of_sorted(intervals);
+}
+
+/// The truth at a time, as relative_error() takes it.
+std::optional<Pose> truth_at(const Trajectory& truth, const std::vector<double>& stamps_us,
+                             std::int64_t utime) {
+    const std::size_t nearest = closest_index(stamps_us, static_cast<double>(utime));
+    if (std::abs(truth[nearest].utime - utime) <= kSameMomentUs) return truth[nearest].world_from_camera;
+    return pose_at(truth, utime, kMaxTruthGapUs);
 }
 
 Eigen::Matrix3Xd matched_positions(const Trajectory& trajectory, const std::vector<PosePair>& pairs,
@@ -190,25 +202,41 @@ std::optional<RelativeError> relative_error(const Trajectory& truth, const Traje
                                             const Delta& delta, const EvaluationOptions& options) {
     if (truth.size() < 2 || estimate.size() < 2) return std::nullopt;
     const std::vector<double> truth_stamps_us = stamps_of(truth);
-    const double max_difference_us = 2.0 * median_interval(truth_stamps_us);
-    const auto truth_at = [&](const StampedPose& pose) -> const StampedPose* {
-        const auto stamp_us = static_cast<double>(pose.utime + microseconds(options.offset_s));
-        const std::size_t nearest = closest_index(truth_stamps_us, stamp_us);
-        return std::abs(truth_stamps_us[nearest] - stamp_us) > max_difference_us ? nullptr : &truth[nearest];
-    };
+    const std::int64_t offset = microseconds(options.offset_s);
+    RelativeError result;
     std::vector<double> metres, degrees;
     for (const auto& [i, j] : delta_pairs(estimate, delta)) {
-        const StampedPose* first = truth_at(estimate[i]);
-        const StampedPose* second = truth_at(estimate[j]);
-        if (first == nullptr || second == nullptr) continue;
-        Pose motion = relative_motion(estimate[i], estimate[j]);
+        const auto first = truth_at(truth, truth_stamps_us, estimate[i].utime + offset);
+        const auto second = truth_at(truth, truth_stamps_us, estimate[j].utime + offset);
+        if (!first || !second) {
+            ++result.left_out;
+            continue;
+        }
+        Pose motion = relative_motion(estimate[i].world_from_camera, estimate[j].world_from_camera);
         motion.translation() *= options.scale;
         const Pose error = motion.inverse() * relative_motion(*first, *second);
         metres.push_back(error.translation().norm());
         degrees.push_back(rotation_angle(error) * degrees_per_radian);
     }
     if (metres.size() < 2) return std::nullopt;
-    return RelativeError{statistics(std::move(metres)), statistics(std::move(degrees))};
+    result.metres = statistics(std::move(metres));
+    result.degrees = statistics(std::move(degrees));
+    return result;
+}
+
+std::string why_no_relative_error(const Trajectory& truth, const Trajectory& estimate, const Delta& delta) {
+    if (truth.size() < 2 || estimate.size() < 2 || delta_pairs(estimate, delta).size() < 2)
+        return "too few pairs that far apart";
+    const double interval_us = median_interval(stamps_of(truth));
+    if (interval_us <= static_cast<double>(kMaxTruthGapUs))
+        return "not measured: the truth has no poses at the estimate's times";
+    char text[200];
+    std::snprintf(
+        text, sizeof(text),
+        "not measured: the truth has poses %.3g s apart (median), too far to know it at the estimate's "
+        "times; at most %g s are interpolated",
+        1e-6 * interval_us, 1e-6 * static_cast<double>(kMaxTruthGapUs));
+    return text;
 }
 
 double matched_path_length(const Trajectory& truth, const std::vector<PosePair>& pairs) {
@@ -247,8 +275,33 @@ Evaluation evaluate(const Trajectory& truth_poses, const Trajectory& estimate_po
     }
     result.path_length_m = matched_path_length(truth, pairs);
     result.ate = absolute_error(truth, estimate, pairs, options.scale);
-    result.rpe_frame = relative_error(truth, estimate, {1.0, DeltaUnit::frames}, options);
-    result.rpe_1s = relative_error(truth, estimate, {1.0, DeltaUnit::seconds}, options);
+    constexpr Delta kFrame{1.0, DeltaUnit::frames}, kSecond{1.0, DeltaUnit::seconds};
+    result.rpe_frame = relative_error(truth, estimate, kFrame, options);
+    result.rpe_1s = relative_error(truth, estimate, kSecond, options);
+    if (!result.rpe_frame) result.why_no_rpe_frame = why_no_relative_error(truth, estimate, kFrame);
+    if (!result.rpe_1s) result.why_no_rpe_1s = why_no_relative_error(truth, estimate, kSecond);
+    return result;
+}
+
+Trajectory stamped_by_index(Trajectory trajectory) {
+    for (std::size_t i = 0; i < trajectory.size(); ++i)
+        trajectory[i].utime = static_cast<std::int64_t>(i) * 1000000;
+    return trajectory;
+}
+
+Evaluation evaluate_by_index(const Trajectory& truth, const Trajectory& estimate,
+                             const EvaluationOptions& options) {
+    if (truth.size() != estimate.size()) {
+        throw std::invalid_argument("pose i is compared with pose i, but the truth has " +
+                                    std::to_string(truth.size()) + " poses and the estimate " +
+                                    std::to_string(estimate.size()));
+    }
+    EvaluationOptions by_index = options;
+    by_index.offset_s = 0;
+    by_index.max_difference_s = 0.02;  // stamps are whole seconds: only equal ones match
+    Evaluation result = evaluate(stamped_by_index(truth), stamped_by_index(estimate), by_index);
+    result.rpe_1s = std::nullopt;
+    result.why_no_rpe_1s = "not measured: the poses have no timestamps";
     return result;
 }
 

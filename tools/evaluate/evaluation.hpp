@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Trajectory errors as the TUM RGB-D benchmark defines them: Sturm, Engelhard, Endres, Burgard, Cremers: A
 // Benchmark for the Evaluation of RGB-D SLAM Systems, IROS 2012, and its tools associate.py, evaluate_ate.py
-// and evaluate_rpe.py. Two differences, both on purpose: stamps are whole microseconds, so a difference that
-// equals a limit does not depend on rounding, and no pair is left out at random (the tools' --max_pairs 0).
+// and evaluate_rpe.py. Three differences, all on purpose: stamps are whole microseconds, so a difference that
+// equals a limit does not depend on rounding; no pair is left out at random (the tools' --max_pairs 0); and
+// relative errors take no pose of the truth for one that is of another moment (see relative_error()).
 #pragma once
 
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -72,15 +74,21 @@ struct Delta {
 struct RelativeError {
     Statistics metres;
     Statistics degrees;
+    std::size_t left_out = 0;  ///< pairs of the estimate for which the truth has no poses
 };
 
 /// RPE over a fixed delta (evaluate_rpe.py --fixed_delta). Each pose of the estimate is paired with the one
-/// nearest to delta further on, unless that is the last. The truth's pose is the nearest in time, and a pair
-/// is left out when that is further than twice the truth's median interval. With relative motion r =
-/// inverse(second) * first, the error is inverse(r_estimate) * r_truth. Nothing for fewer than two pairs: a
-/// trajectory shorter than delta, or no overlap in time.
+/// nearest to delta further on, unless that is the last. The truth's pose is the nearest in time if that is
+/// within 5 ms, else it is interpolated between two poses at most 0.1 s apart; where the truth is sparser the
+/// pair is left out: the tool's nearest pose, which may be twice the truth's interval away, would give the
+/// camera's own motion for an error. With relative motion r = inverse(second) * first, the error is
+/// inverse(r_estimate) * r_truth. Nothing for fewer than two pairs: a trajectory shorter than delta, a sparse
+/// truth, or no overlap in time.
 std::optional<RelativeError> relative_error(const Trajectory& truth, const Trajectory& estimate,
                                             const Delta& delta, const EvaluationOptions& options);
+
+/// Why relative_error() gives nothing, in words. Precondition: it does.
+std::string why_no_relative_error(const Trajectory& truth, const Trajectory& estimate, const Delta& delta);
 
 /// Length of the truth's path from the first matched pose to the last, metres; 0 without pairs.
 double matched_path_length(const Trajectory& truth, const std::vector<PosePair>& pairs);
@@ -97,10 +105,19 @@ struct Evaluation {
     double path_length_m = 0.0;
     std::optional<AbsoluteError> ate;
     std::optional<RelativeError> rpe_frame, rpe_1s;
+    std::string why_no_rpe_frame, why_no_rpe_1s;  ///< where they are missing
 };
 
 /// Evaluates an estimate; throws std::invalid_argument for bad options. Missing parts of the result say what
 /// the data did not allow, see absolute_error() and relative_error().
 Evaluation evaluate(const Trajectory& truth, const Trajectory& estimate, const EvaluationOptions& options);
+
+/// The same for trajectories without timestamps: pose i is compared with pose i, stamps are not looked at,
+/// and there is no RPE per second. Throws std::invalid_argument when they are not equally long.
+Evaluation evaluate_by_index(const Trajectory& truth, const Trajectory& estimate,
+                             const EvaluationOptions& options);
+
+/// The trajectory with pose i at i seconds.
+Trajectory stamped_by_index(Trajectory trajectory);
 
 }  // namespace planemap

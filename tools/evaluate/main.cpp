@@ -9,6 +9,7 @@
 #include <string>
 
 #include "core/files.hpp"
+#include "core/trajectory_file.hpp"
 #include "evaluate/evaluation.hpp"
 #include "messages/process.hpp"
 
@@ -30,8 +31,12 @@ const std::map<std::string, DeltaUnit> delta_units{{"s", DeltaUnit::seconds},
 
 void add_flags(Flags& flags, Arguments& arguments) {
     flags.add_positional("TRUTH", arguments.truth_file,
-                         "true trajectory: lines `timestamp tx ty tz qx qy qz qw`");
-    flags.add_positional("ESTIMATE", arguments.estimate_file, "estimated trajectory, same format");
+                         "true trajectory: lines `timestamp tx ty tz qx qy qz qw` (TUM), EuRoC's csv, or "
+                         "KITTI's 12 numbers a line; timestamps in s, ms, us or ns, known by their size");
+    flags.add_positional(
+        "ESTIMATE", arguments.estimate_file,
+        "estimated trajectory, in any of these forms; KITTI's has no timestamps and goes with "
+        "KITTI's only: pose i with pose i");
     flags.add("json", arguments.json_file,
               "write the figures as JSON to this file, or to - (standard output)");
     flags.add("max-difference", arguments.options.max_difference_s,
@@ -72,20 +77,24 @@ nlohmann::ordered_json to_json(const Statistics& s) {
 nlohmann::ordered_json to_json(const std::optional<RelativeError>& error) {
     if (!error) return nullptr;
     return {{"pairs", error->metres.count},
+            {"left_out", error->left_out},
             {"trans", to_json(error->metres)},
             {"rot_deg", to_json(error->degrees)}};
 }
 
 nlohmann::ordered_json to_json(const Evaluation& evaluation) {
-    return {{"truth_poses", evaluation.truth_poses},
-            {"estimate_poses", evaluation.estimate_poses},
-            {"pairs", evaluation.pairs},
-            {"matched_share", evaluation.matched_share},
-            {"path_length_m", evaluation.path_length_m},
-            {"scale", evaluation.ate->scale},
-            {"ate", to_json(evaluation.ate->metres)},
-            {"rpe_frame", to_json(evaluation.rpe_frame)},
-            {"rpe_1s", to_json(evaluation.rpe_1s)}};
+    nlohmann::ordered_json json = {{"truth_poses", evaluation.truth_poses},
+                                   {"estimate_poses", evaluation.estimate_poses},
+                                   {"pairs", evaluation.pairs},
+                                   {"matched_share", evaluation.matched_share},
+                                   {"path_length_m", evaluation.path_length_m},
+                                   {"scale", evaluation.ate->scale},
+                                   {"ate", to_json(evaluation.ate->metres)},
+                                   {"rpe_frame", to_json(evaluation.rpe_frame)},
+                                   {"rpe_1s", to_json(evaluation.rpe_1s)}};
+    if (!evaluation.rpe_frame) json["rpe_frame_why"] = evaluation.why_no_rpe_frame;
+    if (!evaluation.rpe_1s) json["rpe_1s_why"] = evaluation.why_no_rpe_1s;
+    return json;
 }
 
 void print_row(const std::string& name, const char* unit, const Statistics& s) {
@@ -93,13 +102,17 @@ void print_row(const std::string& name, const char* unit, const Statistics& s) {
                 s.median, s.std, s.min, s.max);
 }
 
-void print_rows(const std::string& name, const std::optional<RelativeError>& error) {
+void print_rows(const std::string& name, const std::optional<RelativeError>& error, const std::string& why) {
     if (!error) {
-        std::printf("%-16s too few pairs that far apart\n", name.c_str());
+        std::printf("%-16s %s\n", name.c_str(), why.c_str());
         return;
     }
     print_row(name, "m", error->metres);
     print_row("", "deg", error->degrees);
+    if (error->left_out > 0) {
+        std::printf("%-16s of %zu pairs; for %zu more the truth has no poses near enough in time\n", "",
+                    error->metres.count, error->left_out);
+    }
 }
 
 void print_table(const Evaluation& evaluation) {
@@ -109,30 +122,75 @@ void print_table(const Evaluation& evaluation) {
     std::printf("%-16s %-4s %9s %9s %9s %9s %9s %9s\n", "", "", "rmse", "mean", "median", "std", "min",
                 "max");
     print_row("ATE", "m", evaluation.ate->metres);
-    print_rows("RPE per frame", evaluation.rpe_frame);
-    print_rows("RPE per 1 s", evaluation.rpe_1s);
+    print_rows("RPE per frame", evaluation.rpe_frame, evaluation.why_no_rpe_frame);
+    print_rows("RPE per 1 s", evaluation.rpe_1s, evaluation.why_no_rpe_1s);
+}
+
+/// The two trajectories, and how their poses are matched: by time, or without timestamps by their number.
+struct Pair {
+    TrajectoryFile truth, estimate;
+    bool by_index = false;
+};
+
+Pair read_pair(const Arguments& arguments) {
+    Pair pair{read_trajectory_file(arguments.truth_file), read_trajectory_file(arguments.estimate_file)};
+    pair.by_index = pair.truth.format == TrajectoryFormat::kKitti;
+    if (pair.by_index != (pair.estimate.format == TrajectoryFormat::kKitti)) {
+        throw std::runtime_error(
+            (pair.by_index ? arguments.truth_file : arguments.estimate_file) +
+            ": KITTI's form (12 numbers a line) has no timestamps and can only be compared with another of "
+            "the "
+            "same form, but " +
+            (pair.by_index ? arguments.estimate_file : arguments.truth_file) + " is in " +
+            format_name(pair.by_index ? pair.estimate.format : pair.truth.format) + "'s");
+    }
+    if (!pair.by_index) return pair;
+    if (pair.truth.poses.size() != pair.estimate.poses.size()) {
+        throw std::runtime_error(arguments.estimate_file + " has " +
+                                 std::to_string(pair.estimate.poses.size()) + " poses, " +
+                                 arguments.truth_file + " " + std::to_string(pair.truth.poses.size()) +
+                                 ": without timestamps (KITTI's form) pose i is compared with pose i, so "
+                                 "both must be equally long");
+    }
+    if (arguments.options.offset_s != 0)
+        throw std::invalid_argument("--offset: KITTI's form has no timestamps to add it to");
+    if (arguments.delta && arguments.delta_unit == "s")
+        throw std::invalid_argument("--delta-unit s: KITTI's form has no timestamps; f, m, rad or deg");
+    return pair;
 }
 
 void run(const Arguments& arguments) {
     arguments.options.validate();
     if (arguments.delta && !(*arguments.delta > 0))
         throw std::invalid_argument("--delta must be greater than 0");
-    const Trajectory truth = read_trajectory(arguments.truth_file);
-    const Trajectory estimate = read_trajectory(arguments.estimate_file);
-    const Evaluation evaluation = evaluate(truth, estimate, arguments.options);
+    const Pair pair = read_pair(arguments);
+    const Trajectory &truth = pair.truth.poses, &estimate = pair.estimate.poses;
+    const Evaluation evaluation = pair.by_index ? evaluate_by_index(truth, estimate, arguments.options)
+                                                : evaluate(truth, estimate, arguments.options);
+    if (!evaluation.ate && pair.by_index)
+        throw std::runtime_error(arguments.estimate_file + ": at least 3 poses are needed");
     if (!evaluation.ate)
         throw std::runtime_error(too_few_pairs(arguments, truth, estimate, evaluation.pairs));
 
     nlohmann::ordered_json json = to_json(evaluation);
-    if (arguments.json_file != "-") print_table(evaluation);
+    json["truth_format"] = format_name(pair.truth.format);
+    json["estimate_format"] = format_name(pair.estimate.format);
+    json["matched_by"] = pair.by_index ? "index" : "time";
+    const bool print = arguments.json_file != "-";
+    if (print && pair.by_index)
+        std::printf("KITTI's form has no timestamps: pose i is compared with pose i\n");
+    if (print) print_table(evaluation);
     if (arguments.delta) {
         const Delta delta{*arguments.delta, delta_units.at(arguments.delta_unit)};
-        const auto error = relative_error(without_repeated_stamps(truth), without_repeated_stamps(estimate),
-                                          delta, arguments.options);
+        const Trajectory truth_once = without_repeated_stamps(truth),
+                         estimate_once = without_repeated_stamps(estimate);
+        const auto error = relative_error(truth_once, estimate_once, delta, arguments.options);
+        const std::string why = error ? "" : why_no_relative_error(truth_once, estimate_once, delta);
         char name[40];
         std::snprintf(name, sizeof(name), "RPE per %g %s", delta.value, arguments.delta_unit.c_str());
-        if (arguments.json_file != "-") print_rows(name, error);
+        if (print) print_rows(name, error, why);
         json["rpe_delta"] = to_json(error);
+        if (!error) json["rpe_delta_why"] = why;
         json["delta"] = delta.value;
         json["delta_unit"] = arguments.delta_unit;
     }

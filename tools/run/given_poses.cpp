@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "run/given_poses.hpp"
 
-#include <algorithm>
-
 #include "messages/channels.hpp"
 #include "messages/convert.hpp"
 #include "messages/decode.hpp"
@@ -14,16 +12,7 @@ constexpr std::int64_t kMaxGapUs = 100000;
 }
 
 std::optional<Pose> given_pose(const Trajectory& trajectory, std::int64_t utime) {
-    const auto after =
-        std::lower_bound(trajectory.begin(), trajectory.end(), utime,
-                         [](const StampedPose& pose, std::int64_t t) { return pose.utime < t; });
-    if (after == trajectory.end()) return std::nullopt;
-    if (after->utime == utime) return after->world_from_camera;
-    if (after == trajectory.begin()) return std::nullopt;
-    const StampedPose &a = *(after - 1), &b = *after;
-    if (b.utime - a.utime > kMaxGapUs) return std::nullopt;
-    return interpolate(a.world_from_camera, b.world_from_camera,
-                       static_cast<double>(utime - a.utime) / static_cast<double>(b.utime - a.utime));
+    return pose_at(trajectory, utime, kMaxGapUs);
 }
 
 GivenPoses::GivenPoses(Bus& bus, Trajectory poses) : bus_(bus), poses_(std::move(poses)) {

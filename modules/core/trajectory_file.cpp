@@ -1,0 +1,306 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/trajectory_file.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/files.hpp"
+#include "core/timestamp.hpp"
+
+namespace planemap {
+
+namespace {
+
+constexpr std::size_t kTumColumns = 8, kKittiColumns = 12, kEurocColumns = 17;
+constexpr std::int64_t kIndexStepUs = 1000000;  // between poses that have no timestamps
+
+/// Where a line holds what.
+struct Columns {
+    std::size_t timestamp = 0;
+    std::array<std::size_t, 3> position{1, 2, 3};
+    std::array<std::size_t, 4> quaternion{4, 5, 6, 7};  ///< x y z w
+
+    std::size_t count() const {
+        return 1 + std::max({timestamp, *std::max_element(position.begin(), position.end()),
+                             *std::max_element(quaternion.begin(), quaternion.end())});
+    }
+};
+constexpr Columns kTum, kEuroc{0, {1, 2, 3}, {5, 6, 7, 4}};
+
+std::vector<std::string_view> split(std::string_view line, std::string_view separators) {
+    std::vector<std::string_view> fields;
+    for (std::size_t at = 0; (at = line.find_first_not_of(separators, at)) != std::string_view::npos;) {
+        const std::size_t end = std::min(line.find_first_of(separators, at), line.size());
+        fields.push_back(line.substr(at, end - at));
+        at = end;
+    }
+    return fields;
+}
+
+/// The numbers that the line begins with, as text.
+std::vector<std::string_view> leading_numbers(std::string_view line) {
+    std::vector<std::string_view> fields = split(line, ", \t\r");
+    const auto is_number = [](std::string_view text) {
+        if (text.starts_with('+')) text.remove_prefix(1);
+        double value = 0;
+        const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+        return error != std::errc::invalid_argument && stop == text.data() + text.size();
+    };
+    fields.erase(std::find_if_not(fields.begin(), fields.end(), is_number), fields.end());
+    return fields;
+}
+
+/// A header's name of a column in small letters, without its unit: " q_RS_w []" gives "q_rs_w".
+std::string column_name(std::string_view text) {
+    std::string name;
+    for (const char c : text.substr(0, text.find('['))) {
+        const char small = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+        if ((small >= 'a' && small <= 'z') || small == '_' || small == '.') name += small;
+    }
+    return name;
+}
+
+/// What a header line says of the columns; nothing for a line that names no pose.
+struct Header {
+    Columns columns;
+    std::optional<TimeUnit> unit;
+    bool commas = false;
+};
+
+std::optional<Header> parse_header(std::string_view line) {
+    line.remove_prefix(std::min(line.find_first_not_of("#% \t"), line.size()));
+    const bool commas = split(line, ",").size() >= kTumColumns;
+    const std::vector<std::string_view> fields = split(line, commas ? "," : " \t\r");
+    if (fields.size() < kTumColumns || !column_name(fields[0]).starts_with("time")) return std::nullopt;
+
+    constexpr std::size_t kMissing = static_cast<std::size_t>(-1);
+    Header header{{0, {kMissing, kMissing, kMissing}, {kMissing, kMissing, kMissing, kMissing}}, {}, commas};
+    for (std::size_t i = 1; i < fields.size(); ++i) {
+        const std::string name = column_name(fields[i]);
+        if (name.empty()) continue;
+        const std::size_t axis = std::string_view("xyzw").find(name.back());
+        std::string what = name.substr(0, name.size() - 1);
+        while (!what.empty() && (what.back() == '_' || what.back() == '.')) what.pop_back();
+        const auto is_any = [&](std::initializer_list<const char*> words) {
+            return std::find(words.begin(), words.end(), what) != words.end();
+        };
+        const bool position =
+            is_any({"", "t", "p", "pos", "position", "trans", "translation"}) || what.starts_with("p_");
+        const bool rotation =
+            is_any({"q", "quat", "quaternion", "rot", "rotation", "orientation"}) || what.starts_with("q_");
+        if (axis > 3) continue;
+        if (rotation && header.columns.quaternion[axis] == kMissing) header.columns.quaternion[axis] = i;
+        if (position && axis < 3 && header.columns.position[axis] == kMissing)
+            header.columns.position[axis] = i;
+    }
+    if (header.columns.count() == 0) return std::nullopt;  // 1 + kMissing: a part of a pose has no name
+    for (const TimeUnit unit :
+         {TimeUnit::kSeconds, TimeUnit::kMilliseconds, TimeUnit::kMicroseconds, TimeUnit::kNanoseconds}) {
+        if (fields[0].find('[' + std::string(unit_name(unit)) + ']') != std::string_view::npos)
+            header.unit = unit;
+    }
+    return header;
+}
+
+/// The name of a form that others write and that is not read here, by how many numbers a line has.
+std::string known_form(std::string_view line, std::size_t numbers) {
+    if (numbers == 0 && line.find_first_of("{[") == line.find_first_not_of(" \t")) return "JSON";
+    switch (numbers) {
+        case 3:
+            return "3 numbers a line: positions alone, or a trajectory of Redwood (.log)";
+        case 4:
+            return "4 numbers a line: a 4 x 4 matrix a pose, over four lines";
+        case 7:
+            return "7 numbers a line: poses without timestamps";
+        case 13:
+            return "13 numbers a line: KITTI-360's poses with a frame number in front";
+        case 16:
+        case 17:
+            return std::to_string(numbers) + " numbers a line: 4 x 4 matrices";
+        default:
+            return std::to_string(numbers) + " numbers a line";
+    }
+}
+
+double number(std::string_view text) {
+    if (text.starts_with('+')) text.remove_prefix(1);
+    double value = 0;
+    const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    return error == std::errc() ? value : std::numeric_limits<double>::infinity();  // out of range
+}
+
+class Reader {
+  public:
+    explicit Reader(const std::filesystem::path& file) : file_(file) {}
+
+    TrajectoryFile read() {
+        std::istringstream in(read_file(file_));
+        for (std::string line; std::getline(in, line);) {
+            ++number_;
+            if (number_ == 1 && line.starts_with("\xef\xbb\xbf")) line.erase(0, 3);  // a byte order mark
+            take(line);
+        }
+        std::stable_sort(result_.poses.begin(), result_.poses.end(),
+                         [](const auto& a, const auto& b) { return a.utime < b.utime; });
+        return std::move(result_);
+    }
+
+  private:
+    [[noreturn]] void fail(const std::string& reason) const {
+        throw std::runtime_error(file_.string() + ":" + std::to_string(number_) + ": " + reason);
+    }
+
+    void take(std::string_view line) {
+        const auto start = line.find_first_not_of(" \t\r");
+        if (start == std::string_view::npos) return;
+        const std::vector<std::string_view> numbers = leading_numbers(line);
+        if (columns_ == 0 && numbers.empty()) {
+            if (const auto header = parse_header(line)) {
+                header_ = header;
+                return;
+            }
+        }
+        if (line[start] == '#') return;
+        if (columns_ == 0) choose_form(line, numbers);
+        check_count(numbers.size());
+        std::vector<double> values;
+        for (const std::string_view text : numbers) values.push_back(number(text));
+        if (!std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); }))
+            fail("a value is not finite; expected " + expected());
+        if (result_.format == TrajectoryFormat::kKitti) {
+            take_matrix(values);
+        } else {
+            take_stamped(values, numbers);
+        }
+    }
+
+    void choose_form(std::string_view line, const std::vector<std::string_view>& numbers) {
+        const bool commas = line.find(',') != std::string_view::npos;
+        const std::size_t count = numbers.size();
+        columns_ = count;
+        if (header_) {
+            order_ = header_->columns;
+            columns_ = order_.count();
+            const bool scalar_first = order_.quaternion[3] < order_.quaternion[0];
+            result_.format = commas && scalar_first ? TrajectoryFormat::kEuroc : TrajectoryFormat::kTum;
+        } else if (commas && count >= kEurocColumns) {
+            order_ = kEuroc;
+            result_.format = TrajectoryFormat::kEuroc;
+        } else if (count == kKittiColumns) {
+            result_.format = TrajectoryFormat::kKitti;
+        } else if (count != kTumColumns) {
+            const std::string form = known_form(line, count);
+            const bool torn = count < kTumColumns && form.find(':') == std::string::npos && form != "JSON";
+            fail((torn ? "" : form + "; ") + ("expected " + expected()));
+        } else if (commas && time_unit_of(number(numbers[0])) == TimeUnit::kNanoseconds) {
+            fail(
+                "comma-separated poses without a header line: it is not known whether the quaternion is w x "
+                "y z "
+                "(EuRoC) or x y z w; a first line `#timestamp [ns],p_x,p_y,p_z,q_w,q_x,q_y,q_z` says it");
+        }
+    }
+
+    void check_count(std::size_t count) const {
+        // Comma-separated files may have more columns than are used; others end in what is a comment.
+        const bool more = header_ ? header_->commas : result_.format == TrajectoryFormat::kEuroc;
+        if (more ? count >= order_.count() : count == columns_) return;
+        fail(std::to_string(count) + " numbers, in a file of " + format_name(result_.format) +
+             "'s form; expected " + expected());
+    }
+
+    std::string expected() const {
+        if (columns_ == 0 || (!header_ && columns_ != kTumColumns && columns_ != kKittiColumns &&
+                              result_.format == TrajectoryFormat::kTum)) {
+            return "eight finite numbers: timestamp tx ty tz qx qy qz qw (TUM), 12: a 3 x 4 matrix row by "
+                   "row "
+                   "(KITTI), or EuRoC's comma-separated columns under their header line";
+        }
+        if (result_.format == TrajectoryFormat::kKitti) return "12 finite numbers: a 3 x 4 matrix row by row";
+        if (header_ || result_.format == TrajectoryFormat::kEuroc)
+            return "at least " + std::to_string(order_.count()) + " finite numbers, as the header line says";
+        return "eight finite numbers: timestamp tx ty tz qx qy qz qw";
+    }
+
+    void take_matrix(const std::vector<double>& v) {
+        Eigen::Matrix3d rotation;
+        rotation << v[0], v[1], v[2], v[4], v[5], v[6], v[8], v[9], v[10];
+        // Files have six digits and more; much less is no rotation but something else in 12 columns.
+        const double off =
+            (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+        if (!(off < 0.02) || rotation.determinant() < 0) {
+            fail("the first 3 x 3 numbers of the 3 x 4 matrix are no rotation");
+        }
+        const auto index = static_cast<std::int64_t>(result_.poses.size());
+        result_.poses.push_back(
+            {index * kIndexStepUs, make_pose({v[3], v[7], v[11]}, Eigen::Quaterniond(rotation))});
+    }
+
+    void take_stamped(const std::vector<double>& v, const std::vector<std::string_view>& text) {
+        const auto& [x, y, z, w] = order_.quaternion;
+        const Eigen::Quaterniond q(v[w], v[x], v[y], v[z]);
+        if (!(q.norm() > 1e-3 && q.norm() < 1e3)) fail("the quaternion is not of unit length");
+        const TimeUnit unit = unit_of(v[order_.timestamp]);
+        const auto utime = timestamp_us(text[order_.timestamp], unit);
+        if (!utime) fail("the timestamp is beyond the range of microseconds in 64 bits");
+        const auto& [px, py, pz] = order_.position;
+        result_.poses.push_back({*utime, make_pose({v[px], v[py], v[pz]}, q)});
+    }
+
+    TimeUnit unit_of(double timestamp) {
+        if (header_ && header_->unit) return *header_->unit;
+        const TimeUnit unit = time_unit_of(timestamp);
+        if (!unit_) unit_ = unit;
+        if (unit != *unit_) {
+            fail(std::string("by its size the timestamp is in ") + unit_name(unit) + ", those before it in " +
+                 unit_name(*unit_));
+        }
+        return unit;
+    }
+
+    std::filesystem::path file_;
+    int number_ = 0;  ///< of the line
+    std::optional<Header> header_;
+    std::size_t columns_ = 0;  ///< 0: no line of numbers was seen yet
+    Columns order_ = kTum;
+    std::optional<TimeUnit> unit_;
+    TrajectoryFile result_;
+};
+
+}  // namespace
+
+const char* format_name(TrajectoryFormat format) {
+    switch (format) {
+        case TrajectoryFormat::kTum:
+            return "TUM";
+        case TrajectoryFormat::kEuroc:
+            return "EuRoC";
+        case TrajectoryFormat::kKitti:
+            return "KITTI";
+    }
+    return "?";
+}
+
+TrajectoryFile read_trajectory_file(const std::filesystem::path& file) {
+    return Reader(file).read();
+}
+
+Trajectory read_trajectory(const std::filesystem::path& file) {
+    TrajectoryFile read = read_trajectory_file(file);
+    if (read.format == TrajectoryFormat::kKitti) {
+        throw std::runtime_error(file.string() +
+                                 ": 12 numbers a line are KITTI's form, which has no timestamps; poses with "
+                                 "timestamps are needed: TUM's or EuRoC's form");
+    }
+    return std::move(read.poses);
+}
+
+}  // namespace planemap

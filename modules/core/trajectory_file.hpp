@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Trajectories as files hold them, in the forms that others write.
+#pragma once
+
+#include <filesystem>
+
+#include "core/trajectory.hpp"
+
+namespace planemap {
+
+enum class TrajectoryFormat { kTum, kEuroc, kKitti };
+
+/// "TUM", "EuRoC" or "KITTI".
+const char* format_name(TrajectoryFormat format);
+
+struct TrajectoryFile {
+    TrajectoryFormat format = TrajectoryFormat::kTum;
+    Trajectory poses;  ///< of KITTI's, which has no timestamps: pose i at i seconds
+};
+
+/// Reads a trajectory, world_from_camera in metres, a pose a line, in one of three forms, which the first
+/// line of numbers tells apart:
+/// - TUM: `timestamp tx ty tz qx qy qz qw`, separated by blanks or commas;
+/// - EuRoC: comma-separated `timestamp, px, py, pz, qw, qx, qy, qz`, with the columns named by a header line
+///   (`#timestamp [ns], p_x, ...`), or 17 columns and more;
+/// - KITTI: the 12 numbers of [R | t] row by row, no timestamp.
+/// A header line that names a timestamp, a position and a quaternion says the order of the columns in any
+/// file. Timestamps are in the unit of the header's brackets, else in the one that their size tells
+/// (time_unit_of()). Comments (#) and blank lines are skipped, text after the numbers too. The result is
+/// sorted by time.
+/// Throws std::runtime_error naming file, line and reason: a form that is none of these (by its name where it
+/// has one), lines of different forms, a value that is not finite, a quaternion far from unit length, a
+/// matrix that is no rotation, a timestamp beyond 64 bits of microseconds.
+TrajectoryFile read_trajectory_file(const std::filesystem::path& file);
+
+}  // namespace planemap
