@@ -2,15 +2,155 @@
 #include "messages/flags.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <charconv>
 #include <cstdio>
+#include <type_traits>
+
+#include "core/nearest_name.hpp"
+#include "core/version.hpp"
 
 namespace planemap {
+
+namespace {
+
+/// ", did you mean X?", or nothing.
+std::string did_you_mean(const std::string& word, const std::vector<std::string>& names,
+                         const std::string& lead) {
+    const std::string nearest = nearest_name(word, names);
+    return nearest.empty() ? "" : ", did you mean " + lead + nearest + "?";
+}
+
+/// Long names without dashes.
+std::vector<std::string> long_names(const CLI::App& app) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : app.get_options())
+        for (const std::string& name : option->get_lnames()) names.push_back(name);
+    return names;
+}
+
+/// The file of --config. CLI11's own reader drops what follows a # inside quotes, takes the first of two
+/// values without a word, and names no line.
+class ConfigFile : public CLI::ConfigBase {
+  public:
+    explicit ConfigFile(const CLI::App& app) : app_(app) {}
+
+    std::vector<CLI::ConfigItem> from_config(std::istream& input) const override {
+        std::vector<CLI::ConfigItem> items;
+        std::string line;
+        for (int number = 1; std::getline(input, line); ++number) {
+            if (number == 1 && line.rfind("\xef\xbb\xbf", 0) == 0) line.erase(0, 3);  // a byte order mark
+            CLI::detail::trim(line);
+            if (line.empty() || line[0] == '#' || line[0] == ';') continue;
+            const auto fail = [&](const std::string& reason) {
+                throw CLI::ConfigError(std::to_string(number) + ": " + reason);
+            };
+            const auto equals = line.find('=');
+            CLI::ConfigItem item;
+            item.name = CLI::detail::trim_copy(line.substr(0, equals));
+            const CLI::Option* option = app_.get_option_no_throw("--" + item.name);
+            if (option == nullptr) option = app_.get_option_no_throw(item.name);
+            if (option == nullptr) {
+                fail("unknown option " + item.name + did_you_mean(item.name, long_names(app_), ""));
+            }
+            if (std::any_of(items.begin(), items.end(), [&](auto& other) { return other.name == item.name; }))
+                fail(item.name + " is given twice");
+            std::string value = equals == std::string::npos ? "true" : line.substr(equals + 1);
+            if (!take_value(value)) fail("the value of " + item.name + " has no end: a \" is missing");
+            item.inputs = {value};
+            items.push_back(item);
+        }
+        return items;
+    }
+
+  private:
+    /// Text in quotes, with \" and \\ inside, or what stands before a comment. False for quotes without end.
+    static bool take_value(std::string& value) {
+        CLI::detail::trim(value);
+        if (value.empty() || (value[0] != '"' && value[0] != '\'')) {
+            for (std::size_t i = 0; i < value.size(); ++i) {
+                if (value[i] != '#' || (i > 0 && value[i - 1] != ' ' && value[i - 1] != '\t')) continue;
+                value.erase(i);
+                break;
+            }
+            CLI::detail::trim(value);
+            return true;
+        }
+        const char quote = value[0];
+        std::string text;
+        for (std::size_t i = 1; i < value.size(); ++i) {
+            if (value[i] == quote) {
+                const std::string rest = CLI::detail::trim_copy(value.substr(i + 1));
+                value = text;
+                return rest.empty() || rest[0] == '#' || rest[0] == ';';
+            }
+            if (value[i] == '\\' && quote == '"' && i + 1 < value.size()) ++i;
+            text += value[i];
+        }
+        return false;
+    }
+
+    const CLI::App& app_;
+};
+
+/// As ConfigFile reads it.
+std::string config_text(const FlagValue& flag) {
+    return std::visit(
+        [](const auto& value) -> std::string {
+            using T = std::decay_t<decltype(value)>;
+            if constexpr (std::is_same_v<T, std::monostate>) {
+                return "";
+            } else if constexpr (std::is_same_v<T, bool>) {
+                return value ? "true" : "false";
+            } else if constexpr (std::is_same_v<T, std::string>) {
+                std::string text = "\"";
+                for (const char c : value) text += (c == '"' || c == '\\' ? "\\" : "") + std::string(1, c);
+                return text + "\"";
+            } else {
+                std::array<char, 64> digits;  // the shortest that gives the same number again
+                return {digits.data(),
+                        std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
+            }
+        },
+        flag.value);
+}
+
+template <typename T>
+decltype(FlagValue::value) value_of(const T& field) {
+    if constexpr (std::is_same_v<T, int>) {
+        return std::int64_t{field};
+    } else if constexpr (std::is_same_v<T, std::filesystem::path>) {
+        return value_of(field.string());
+    } else if constexpr (std::is_same_v<T, std::string>) {
+        if (field.empty()) return std::monostate{};
+        return field;
+    } else {
+        return field;
+    }
+}
+template <typename T>
+decltype(FlagValue::value) value_of(const std::optional<T>& field) {
+    if (!field) return std::monostate{};
+    return value_of(*field);
+}
+
+bool is_flag(const std::string& argument) {
+    return argument.size() > 1 && argument != "--" && argument[0] == '-' && argument[1] != '.' &&
+           !(argument[1] >= '0' && argument[1] <= '9');
+}
+
+}  // namespace
 
 class Flags::Impl {
   public:
     Impl(const std::string& program, const std::string& description) : app(description, program) {
-        app.set_config("--config", "", "Read flags from an INI or TOML file: one `name = value` a line");
+        app.set_config("--config", "", "Read options from a file: one `name = value` a line, # is a comment");
+        app.config_formatter(std::make_shared<ConfigFile>(app));
         app.allow_config_extras(CLI::config_extras_mode::error);
+        app.set_version_flag("--version", program + " " + version(), "Print the version and exit");
+        app.add_flag("--dump-config", dump, "Print all options as a file for --config, and exit")
+            ->configurable(false);
     }
 
     /// "o,output" to "-o,--output", with the section's prefix.
@@ -20,17 +160,76 @@ class Flags::Impl {
         return "-" + name.substr(0, comma) + ",--" + prefix + name.substr(comma + 1);
     }
     template <typename T>
-    void option(const std::string& name, T& field, const std::string& description) {
-        finish(app.add_option(dashed(name), field, description)->capture_default_str());
+    CLI::Option* option(const std::string& name, T& field, const std::string& description) {
+        CLI::Option* const added = app.add_option(dashed(name), field, description);
+        finish(added, field);
+        return added;
     }
-    void finish(CLI::Option* option) {
+    template <typename T>
+    void finish(CLI::Option* option, const T& field) {
         if (!heading.empty()) option->group(heading);
         last = option;
+        known.push_back({option, [&field] { return value_of(field); }});
     }
+
+    std::string name_of(const CLI::Option* option) const {
+        return option->get_lnames().empty() ? option->get_name() : option->get_lnames().front();
+    }
+
+    /// Of all that CLI11 could not place, what the user should hear of; empty if there is nothing.
+    std::string complaint() const {
+        std::vector<std::string> rest = app.remaining();
+        std::erase(rest, "--");
+        const auto unknown = std::find_if(rest.begin(), rest.end(), is_flag);
+        if (unknown != rest.end()) {
+            const std::string flag = unknown->substr(0, unknown->find('='));
+            const std::string word = flag.substr(std::min(flag.find_first_not_of('-'), flag.size()));
+            return "unknown flag " + flag + did_you_mean(word, long_names(app), "--");
+        }
+        return rest.empty() ? "" : "unexpected argument \"" + rest.front() + "\"";
+    }
+
+    /// "-output", which CLI11 reads as -o with the value "utput".
+    std::string single_dash(int argc, const char* const* argv) const {
+        const std::vector<std::string> names = long_names(app);
+        for (int i = 1; i < argc; ++i) {
+            const std::string argument = argv[i];
+            if (argument == "--") break;
+            const std::string word = argument.substr(0, argument.find('='));
+            if (word.size() > 2 && word[0] == '-' && word[1] != '-' &&
+                std::find(names.begin(), names.end(), word.substr(1)) != names.end())
+                return "unknown flag " + word + ", did you mean -" + word + "?";
+        }
+        return "";
+    }
+
+    std::string config() const {
+        std::string text = "# " + app.get_name() + " " + version() + ": all options, for --config\n";
+        std::string group;
+        for (const auto& [option, value] : known) {
+            if (!option->get_configurable()) continue;
+            if (option->get_group() != group && option->get_group() != "Options")
+                text += "\n# " + option->get_group() + "\n";
+            group = option->get_group();
+            const std::string written = config_text({"", value()});
+            std::string description = option->get_description();
+            std::replace(description.begin(), description.end(), '\n', ' ');
+            text += (written.empty() ? "# " : "") + name_of(option) + " = " + written + "  # " + description +
+                    "\n";
+        }
+        return text;
+    }
+
+    struct Known {
+        CLI::Option* option;
+        std::function<decltype(FlagValue::value)()> value;
+    };
 
     CLI::App app;
     std::string heading, prefix;
     CLI::Option* last = nullptr;
+    std::vector<Known> known;
+    bool dump = false;
 };
 
 Flags::Flags(const std::string& program, const std::string& description)
@@ -43,53 +242,74 @@ void Flags::section(const std::string& heading, const std::string& prefix) {
 }
 
 void Flags::add(const std::string& name, double& field, const std::string& description) {
-    impl_->option(name, field, description);
+    impl_->option(name, field, description)->capture_default_str();
 }
 void Flags::add(const std::string& name, int& field, const std::string& description) {
-    impl_->option(name, field, description);
+    impl_->option(name, field, description)->capture_default_str();
 }
 void Flags::add(const std::string& name, std::uint64_t& field, const std::string& description) {
-    impl_->option(name, field, description);
+    impl_->option(name, field, description)->capture_default_str();
 }
 void Flags::add(const std::string& name, std::string& field, const std::string& description) {
-    impl_->option(name, field, description);
+    impl_->option(name, field, description)->capture_default_str();
 }
 void Flags::add(const std::string& name, std::filesystem::path& field, const std::string& description) {
-    impl_->finish(impl_->app.add_option(impl_->dashed(name), field, description));
+    impl_->option(name, field, description);
 }
 void Flags::add(const std::string& name, std::optional<double>& field, const std::string& description) {
-    impl_->finish(impl_->app.add_option(impl_->dashed(name), field, description));
+    impl_->option(name, field, description);
 }
 void Flags::add(const std::string& name, std::optional<std::uint64_t>& field,
                 const std::string& description) {
-    impl_->finish(impl_->app.add_option(impl_->dashed(name), field, description));
+    impl_->option(name, field, description);
 }
 void Flags::add(const std::string& name, bool& field, const std::string& description) {
-    impl_->finish(impl_->app.add_flag(impl_->dashed(name), field, description));
+    impl_->finish(impl_->app.add_flag(impl_->dashed(name), field, description), field);
 }
 void Flags::add_choice(const std::string& name, std::string& field, const std::vector<std::string>& words,
                        const std::string& description) {
-    impl_->option(name, field, description);
-    impl_->last->check(CLI::IsMember(words));
+    impl_->option(name, field, description)->capture_default_str()->check(CLI::IsMember(words));
 }
 void Flags::required() {
     impl_->last->required();
 }
 void Flags::add_positional(const std::string& name, std::string& field, const std::string& description,
                            bool required) {
-    impl_->finish(impl_->app.add_option(name, field, description)->required(required));
+    CLI::Option* const option = impl_->app.add_option(name, field, description)->required(required);
+    // A list of arguments ("FILE...") is the program's own business: one line cannot hold it.
+    if (name.ends_with("...")) option->configurable(false);
+    impl_->finish(option, field);
 }
 
 int Flags::parse(int argc, const char* const* argv) {
+    const CLI::App& app = impl_->app;
+    const auto wrong = [&](const std::string& what) {
+        std::fprintf(stderr, "%s: %s (see --help)\n", app.get_name().c_str(), what.c_str());
+        return 2;
+    };
     try {
+        if (const std::string word = impl_->single_dash(argc, argv); !word.empty()) return wrong(word);
         impl_->app.parse(argc, argv);
-        return -1;
     } catch (const CLI::Success& success) {
         return impl_->app.exit(success);
+    } catch (const CLI::ConfigError& error) {
+        return wrong(app.get_config_ptr()->as<std::string>() + ":" + error.what());
     } catch (const CLI::Error& error) {
-        std::fprintf(stderr, "%s: %s (see --help)\n", impl_->app.get_name().c_str(), error.what());
-        return 2;
+        const bool about_all = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr ||
+                               dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
+        const std::string complaint = about_all ? impl_->complaint() : "";
+        if (!complaint.empty()) return wrong(complaint);
+        if (!(impl_->dump && about_all)) return wrong(error.what());
     }
+    if (!impl_->dump) return -1;
+    std::fputs(impl_->config().c_str(), stdout);
+    return 0;
+}
+
+std::vector<FlagValue> Flags::values() const {
+    std::vector<FlagValue> values;
+    for (const auto& [option, value] : impl_->known) values.push_back({impl_->name_of(option), value()});
+    return values;
 }
 
 }  // namespace planemap

@@ -8,13 +8,22 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace planemap {
 
+/// An option by its long name without dashes (of an argument without a name: what --help calls it), and its
+/// value; std::monostate where none was given and there is no default.
+struct FlagValue {
+    std::string name;
+    std::variant<std::monostate, bool, double, std::int64_t, std::uint64_t, std::string> value;
+};
+
 /// A program's command line. Flags write straight into the fields they are given, show their defaults in
-/// --help, and may also come from a file (--config). CLI11 does the work and stays hidden here: its header
-/// takes seconds to compile.
+/// --help, and may also come from a file (--config): one `name = value` a line, # begins a comment, text may
+/// stand in quotes. --dump-config prints such a file with all options as they are, and --version the
+/// program's version. CLI11 does the work and stays hidden here: its header takes seconds to compile.
 class Flags {
   public:
     Flags(const std::string& program, const std::string& description);
@@ -47,8 +56,12 @@ class Flags {
     void add_positional(const std::string& name, std::string& field, const std::string& description,
                         bool required = true);
 
-    /// Returns -1 to go on, or the exit code: 0 after --help, 2 for wrong flags (said in one line on stderr).
+    /// Returns -1 to go on, or the exit code: 0 after --help, --version and --dump-config, 2 for wrong flags
+    /// (said in one line on stderr; a flag that is not known with the nearest one that is).
     int parse(int argc, const char* const* argv);
+
+    /// All options in the order they were added, with their values now.
+    std::vector<FlagValue> values() const;
 
   private:
     class Impl;

@@ -11,23 +11,27 @@ void add_flags(Flags& flags, SegmentationOptions& options, const std::string& pr
               "smallest region as a share of the image's pixels");
     flags.add("cells-min-fill", options.cells.min_fill,
               "share of a cell's pixels that must be valid for a fit");
-    flags.add("cells-planarity-sigmas", options.cells.planarity_sigmas, "largest RMS of a planar cell");
+    flags.add("cells-planarity-sigmas", options.cells.planarity_sigmas,
+              "largest RMS of a planar cell, in sigmas of the depth noise there");
     flags.add("cells-lateral-px", options.cells.lateral_px,
               "standard deviation of where a reading was taken, pixels");
     flags.add("cells-step-m", options.cells.step_m,
               "largest step between neighbouring cells of one plane, metres");
     flags.add("cells-step-sigmas", options.cells.step_sigmas,
-              "largest step between neighbouring cells of one plane, metres");
+              "largest step between neighbouring cells of one plane, in sigmas of the depth noise there; the "
+              "larger of both counts");
     flags.add("cells-grow-m", options.cells.grow_m,
               "largest mean distance of a cell to its region's plane, metres");
     flags.add("cells-grow-sigmas", options.cells.grow_sigmas,
-              "largest mean distance of a cell to its region's plane, metres");
+              "largest mean distance of a cell to its region's plane, in sigmas of the depth noise there; "
+              "the larger of both counts");
     flags.add("cells-grow-angle-deg", options.cells.grow_angle_deg,
               "largest angle between cell and region, beyond the cell's own error");
     flags.add("cells-merge-m", options.cells.merge_m,
               "by how much two regions may leave their common plane (RMS), metres");
     flags.add("cells-merge-sigmas", options.cells.merge_sigmas,
-              "by how much two regions may leave their common plane (RMS), metres");
+              "by how much two regions may leave their common plane (RMS), in sigmas of the depth noise "
+              "there; the larger of both counts");
     flags.add("cells-merge-angle-deg", options.cells.merge_angle_deg,
               "largest angle between two regions to be merged");
     flags.add("cells-bend-deg", options.cells.bend_deg,
@@ -35,7 +39,8 @@ void add_flags(Flags& flags, SegmentationOptions& options, const std::string& pr
     flags.add("cells-thickness-m", options.cells.thickness_m,
               "largest distance of a pixel to its region's plane, metres");
     flags.add("cells-thickness-sigmas", options.cells.thickness_sigmas,
-              "largest distance of a pixel to its region's plane, metres");
+              "largest distance of a pixel to its region's plane, in sigmas of the depth noise there; the "
+              "larger of both counts");
     flags.add("ransac-thickness-m", options.ransac.thickness_m,
               "largest distance of an inlier to its plane, metres");
     flags.add("ransac-min-inliers", options.ransac.min_inliers,

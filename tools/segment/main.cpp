@@ -54,7 +54,7 @@ int main(int argc, char** argv) {
 
     std::vector<std::string> arguments(argv + 1, argv + argc);
     const std::vector<std::string> files =
-        take_files(arguments, {"--overlay", "-q", "--quiet", "-h", "--help"});
+        take_files(arguments, {"--overlay", "-q", "--quiet", "-h", "--help", "--version", "--dump-config"});
     options.images.assign(files.begin(), files.end());
     std::vector<const char*> known{kProgram};
     for (const std::string& argument : arguments) known.push_back(argument.c_str());
