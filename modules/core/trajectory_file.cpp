@@ -13,8 +13,8 @@
 #include <string_view>
 #include <vector>
 
-#include "core/files.hpp"
-#include "core/timestamp.hpp"
+#include "core/stamp.hpp"
+#include "core/text_file.hpp"
 
 namespace planemap {
 
@@ -72,7 +72,7 @@ std::string column_name(std::string_view text) {
 /// What a header line says of the columns; nothing for a line that names no pose.
 struct Header {
     Columns columns;
-    std::optional<TimeUnit> unit;
+    std::optional<StampUnit> unit;
     bool commas = false;
 };
 
@@ -103,10 +103,11 @@ std::optional<Header> parse_header(std::string_view line) {
             header.columns.position[axis] = i;
     }
     if (header.columns.count() == 0) return std::nullopt;  // 1 + kMissing: a part of a pose has no name
-    for (const TimeUnit unit :
-         {TimeUnit::kSeconds, TimeUnit::kMilliseconds, TimeUnit::kMicroseconds, TimeUnit::kNanoseconds}) {
-        if (fields[0].find('[' + std::string(unit_name(unit)) + ']') != std::string_view::npos)
-            header.unit = unit;
+    for (const auto& [name, unit] : {std::pair("[s]", StampUnit::kSeconds),
+                                     {"[ms]", StampUnit::kMilliseconds},
+                                     {"[us]", StampUnit::kMicroseconds},
+                                     {"[ns]", StampUnit::kNanoseconds}}) {
+        if (fields[0].find(name) != std::string_view::npos) header.unit = unit;
     }
     return header;
 }
@@ -131,6 +132,12 @@ std::string known_form(std::string_view line, std::size_t numbers) {
     }
 }
 
+/// A number in the unit as one in seconds, which read_stamp() takes for such; for those without exponent.
+std::string in_seconds(std::string_view text, StampUnit unit) {
+    const char* exponents[] = {"", "e-3", "e-6", "e-9"};
+    return std::string(text) + exponents[static_cast<int>(unit)];
+}
+
 double number(std::string_view text) {
     if (text.starts_with('+')) text.remove_prefix(1);
     double value = 0;
@@ -143,10 +150,9 @@ class Reader {
     explicit Reader(const std::filesystem::path& file) : file_(file) {}
 
     TrajectoryFile read() {
-        std::istringstream in(read_file(file_));
+        std::istringstream in(read_text_file(file_));
         for (std::string line; std::getline(in, line);) {
             ++number_;
-            if (number_ == 1 && line.starts_with("\xef\xbb\xbf")) line.erase(0, 3);  // a byte order mark
             take(line);
         }
         std::stable_sort(result_.poses.begin(), result_.poses.end(),
@@ -201,7 +207,7 @@ class Reader {
             const std::string form = known_form(line, count);
             const bool torn = count < kTumColumns && form.find(':') == std::string::npos && form != "JSON";
             fail((torn ? "" : form + "; ") + ("expected " + expected()));
-        } else if (commas && time_unit_of(number(numbers[0])) == TimeUnit::kNanoseconds) {
+        } else if (commas && std::abs(number(numbers[0])) > 1e17) {
             fail(
                 "comma-separated poses without a header line: it is not known whether the quaternion is w x "
                 "y z "
@@ -248,22 +254,17 @@ class Reader {
         const auto& [x, y, z, w] = order_.quaternion;
         const Eigen::Quaterniond q(v[w], v[x], v[y], v[z]);
         if (!(q.norm() > 1e-3 && q.norm() < 1e3)) fail("the quaternion is not of unit length");
-        const TimeUnit unit = unit_of(v[order_.timestamp]);
-        const auto utime = timestamp_us(text[order_.timestamp], unit);
-        if (!utime) fail("the timestamp is beyond the range of microseconds in 64 bits");
         const auto& [px, py, pz] = order_.position;
-        result_.poses.push_back({*utime, make_pose({v[px], v[py], v[pz]}, q)});
+        result_.poses.push_back({utime_of(text[order_.timestamp]), make_pose({v[px], v[py], v[pz]}, q)});
     }
 
-    TimeUnit unit_of(double timestamp) {
-        if (header_ && header_->unit) return *header_->unit;
-        const TimeUnit unit = time_unit_of(timestamp);
-        if (!unit_) unit_ = unit;
-        if (unit != *unit_) {
-            fail(std::string("by its size the timestamp is in ") + unit_name(unit) + ", those before it in " +
-                 unit_name(*unit_));
+    std::int64_t utime_of(std::string_view text) {
+        const bool scaled = header_ && header_->unit && text.find_first_of("eE") == std::string_view::npos;
+        try {
+            return stamps_.read(scaled ? in_seconds(text, *header_->unit) : std::string(text));
+        } catch (const std::runtime_error& error) {
+            fail(error.what());
         }
-        return unit;
     }
 
     std::filesystem::path file_;
@@ -271,7 +272,7 @@ class Reader {
     std::optional<Header> header_;
     std::size_t columns_ = 0;  ///< 0: no line of numbers was seen yet
     Columns order_ = kTum;
-    std::optional<TimeUnit> unit_;
+    StampColumn stamps_;
     TrajectoryFile result_;
 };
 

@@ -26,7 +26,7 @@ struct TrajectoryFile {
 /// - KITTI: the 12 numbers of [R | t] row by row, no timestamp.
 /// A header line that names a timestamp, a position and a quaternion says the order of the columns in any
 /// file. Timestamps are in the unit of the header's brackets, else in the one that their size tells
-/// (time_unit_of()). Comments (#) and blank lines are skipped, text after the numbers too. The result is
+/// (read_stamp()). Comments (#) and blank lines are skipped, text after the numbers too. The result is
 /// sorted by time.
 /// Throws std::runtime_error naming file, line and reason: a form that is none of these (by its name where it
 /// has one), lines of different forms, a value that is not finite, a quaternion far from unit length, a

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "map/export.hpp"
@@ -16,7 +17,8 @@ namespace {
 
 using Polygon3 = std::vector<std::vector<Eigen::Vector3d>>;  ///< rings in the world frame
 
-constexpr double kPageWidth_px = 1200, kPageHeight_px = 800, kMargin_px = 60;
+constexpr double kPageWidth_px = 1200, kPageHeight_px = 800, kMargin_px = 40;
+constexpr double kTitleHeight_px = 44, kFootHeight_px = 50, kLegendWidth_px = 220;
 constexpr double kNumberedArea_m2 = 0.15;  ///< smaller planes are drawn without their number
 
 std::string text(double value) {
@@ -63,41 +65,57 @@ std::string trajectory_line(const Trajectory& trajectory, const Project& project
         const Eigen::Vector2d p = project(pose.world_from_camera.translation());
         d += d.empty() ? move_to(p) : line_to(p);
     }
-    const auto dot = [&](const StampedPose& pose, const char* color) {
+    const auto dot = [&](const StampedPose& pose, const std::string& color) {
         const Eigen::Vector2d p = project(pose.world_from_camera.translation());
         return "<circle cx=\"" + text(p.x()) + "\" cy=\"" + text(p.y()) + "\" r=\"5\" fill=\"" + color +
                "\" stroke=\"white\"/>\n";
     };
-    return "<path d=\"" + d +
-           "\" fill=\"none\" stroke=\"#b3142a\" stroke-width=\"2\" stroke-linejoin=\"round\"/>\n" +
-           dot(trajectory.front(), "#1a7f37") + dot(trajectory.back(), "#b3142a");
+    return "<path d=\"" + d + "\" fill=\"none\" stroke=\"" + css(kTrajectoryColor) +
+           "\" stroke-width=\"2\" stroke-linejoin=\"round\"/>\n" + dot(trajectory.front(), "rgb(26,127,55)") +
+           dot(trajectory.back(), css(kTrajectoryColor));
 }
 
-std::string page(const std::string& title, const std::string& body) {
+std::string words(const Eigen::Vector2d& at, const std::string& what, const char* attributes = "") {
+    return "<text x=\"" + text(at.x()) + "\" y=\"" + text(at.y()) + "\" " + attributes + ">" + what +
+           "</text>\n";
+}
+
+std::string page(const std::string& title, const std::string& subtitle, const std::string& body) {
     const std::string size = text(kPageWidth_px) + "\" height=\"" + text(kPageHeight_px);
     return "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + size + "\" viewBox=\"0 0 " +
            text(kPageWidth_px) + " " + text(kPageHeight_px) +
            "\" font-family=\"sans-serif\" font-size=\"13\">\n<title>" + title + "</title>\n<rect width=\"" +
-           size + "\" fill=\"white\"/>\n" + body + "</svg>\n";
+           size + "\" fill=\"white\"/>\n" + body + words({16, 24}, title, "font-size=\"17\"") +
+           words({16, 41}, subtitle, "fill=\"#555\"") + "</svg>\n";
 }
 
-/// The colours of the labels: of the numbers' discs, and in the legend.
-const char* label_color(PlaneLabel label) {
+std::string count_of(std::size_t count, const std::string& what) {
+    return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
+/// Where up comes from.
+std::string up_text(const PlaneMap& map) {
+    return map.up.isZero() ? "up: as the camera was held, the planes do not tell it"
+                           : "up: as the planes tell it";
+}
+
+/// What a plane is filled with, or an upright one drawn with: a colour a label.
+Rgb label_color(PlaneLabel label) {
     switch (label) {
         case PlaneLabel::kFloor:
-            return "#f5deb3";
+            return {236, 219, 180};
         case PlaneLabel::kCeiling:
-            return "#e6e6fa";
+            return {203, 184, 232};
         case PlaneLabel::kWall:
-            return "#ffffff";
+            return {46, 72, 101};
         case PlaneLabel::kHorizontal:
-            return "#b7e4c7";
+            return {104, 184, 138};
         case PlaneLabel::kOther:
-            return "#ffc9c9";
+            return {224, 123, 77};
         case PlaneLabel::kUnknown:
             break;
     }
-    return "#dddddd";
+    return {170, 170, 170};
 }
 
 /// Puts numbers on a page so that they do not cover each other.
@@ -118,9 +136,9 @@ class Numbers {
                 "<path d=\"" + move_to(wanted) + line_to(at) + "\" stroke=\"#555\" stroke-width=\"0.7\"/>\n";
         }
         return svg + "<circle cx=\"" + text(at.x()) + "\" cy=\"" + text(at.y()) + "\" r=\"" + text(radius) +
-               "\" fill=\"" + label_color(plane.label) +
-               "\" fill-opacity=\"0.85\" stroke=\"#555\" stroke-width=\"0.7\"/><text x=\"" + text(at.x()) +
-               "\" y=\"" + text(at.y() + 4.5) + "\" text-anchor=\"middle\">" + number + "</text>\n";
+               "\" fill=\"white\" fill-opacity=\"0.8\" stroke=\"" + css(label_color(plane.label), 0.8) +
+               "\" stroke-width=\"1.2\"/><text x=\"" + text(at.x()) + "\" y=\"" + text(at.y() + 4.5) +
+               "\" text-anchor=\"middle\">" + number + "</text>\n";
     }
 
   private:
@@ -132,10 +150,22 @@ class Numbers {
     std::vector<std::pair<Eigen::Vector2d, double>> placed_;
 };
 
-/// Scales and centres points on the page; y of the input points up the page.
+/// A part of the page.
+struct Area {
+    Eigen::Vector2d low, high;
+};
+/// Between title and foot; beside the legend or all across.
+Area drawing_area(bool beside_legend) {
+    return {
+        {kMargin_px, kTitleHeight_px + 14},
+        {kPageWidth_px - (beside_legend ? kLegendWidth_px : kMargin_px), kPageHeight_px - kFootHeight_px}};
+}
+
+/// Scales and centres points in an area of the page; y of the input points up the page.
 class Fit {
   public:
-    explicit Fit(const std::vector<Eigen::Vector2d>& points) {
+    Fit(const std::vector<Eigen::Vector2d>& points, const Area& area)
+        : centre_(0.5 * (area.low + area.high)) {
         Eigen::Vector2d low(-1, -1), high(1, 1);
         if (!points.empty()) low = high = points[0];
         for (const Eigen::Vector2d& p : points) {
@@ -143,52 +173,85 @@ class Fit {
             high = high.cwiseMax(p);
         }
         const Eigen::Vector2d size = (high - low).cwiseMax(1e-3);
-        scale_ = std::min((kPageWidth_px - 2 * kMargin_px) / size.x(),
-                          (kPageHeight_px - 2 * kMargin_px) / size.y());
+        scale_ = (area.high - area.low).cwiseQuotient(size).minCoeff();
         middle_ = 0.5 * (low + high);
     }
     double scale() const { return scale_; }
     Eigen::Vector2d operator()(const Eigen::Vector2d& p) const {
         const Eigen::Vector2d q = scale_ * (p - middle_);
-        return {0.5 * kPageWidth_px + q.x(), 0.5 * kPageHeight_px - q.y()};
+        return {centre_.x() + q.x(), centre_.y() - q.y()};
     }
 
   private:
     double scale_ = 1;  ///< pixels per metre
-    Eigen::Vector2d middle_;
+    Eigen::Vector2d centre_, middle_;
 };
 
-/// A bar of 1, 2 or 5 times a power of ten metres, about a sixth of the page.
-std::string scale_bar(double pixels_per_metre) {
-    const double wanted = kPageWidth_px / 6 / pixels_per_metre;
-    double length = std::pow(10, std::floor(std::log10(wanted)));
-    if (5 * length <= wanted) {
-        length *= 5;
-    } else if (2 * length <= wanted) {
-        length *= 2;
-    }
-    const double x = kMargin_px / 2, y = kPageHeight_px - kMargin_px / 2, end = x + length * pixels_per_metre;
-    std::array<char, 32> buffer;
-    const auto to = std::to_chars(buffer.data(), buffer.data() + buffer.size(), length).ptr;
-    return "<path d=\"" + move_to({x, y - 5}) + "v5H" + text(end) +
-           "v-5\" fill=\"none\" stroke=\"black\"/>\n<text x=\"" + text(0.5 * (x + end)) + "\" y=\"" +
-           text(y - 6) + "\" text-anchor=\"middle\">" + std::string(buffer.data(), to) + " m</text>\n";
+/// 1, 2 or 5 times a power of ten, the largest that is not over `most`.
+double round_length(double most) {
+    const double power = std::pow(10, std::floor(std::log10(most)));
+    return power * (5 * power <= most ? 5 : 2 * power <= most ? 2 : 1);
 }
 
-/// The labels of the planes that are numbered, each with its colour.
-std::string legend(const std::vector<const MapPlane*>& numbered) {
+std::string metres(double length) {
+    std::array<char, 32> buffer;
+    return std::string(buffer.data(),
+                       std::to_chars(buffer.data(), buffer.data() + buffer.size(), length).ptr) +
+           " m";
+}
+
+/// A bar in the foot of the page, about a sixth of its width.
+std::string scale_bar(double pixels_per_metre) {
+    const double length = round_length(kPageWidth_px / 6 / pixels_per_metre);
+    const double x = kMargin_px, y = kPageHeight_px - 16, end = x + length * pixels_per_metre;
+    return "<path d=\"" + move_to({x, y - 5}) + "v5H" + text(end) +
+           "v-5\" fill=\"none\" stroke=\"black\"/>\n" +
+           words({0.5 * (x + end), y - 6}, metres(length), "text-anchor=\"middle\"");
+}
+
+/// What became of the planes of a map in the overhead drawing.
+struct Shown {
+    const MapPlane* plane;
+    bool drawn, numbered;
+};
+
+/// Every plane of the map by its label, with the label's colour; beside the drawing.
+std::string legend(const std::vector<Shown>& planes, std::size_t all) {
+    const double x = kPageWidth_px - kLegendWidth_px + 24;
+    double y = kTitleHeight_px + 30;
     std::string svg;
-    double y = kMargin_px / 2;
+    const auto line = [&](const std::string& mark, const std::string& what, const char* attributes = "") {
+        svg += mark + words({x + 26, y + 4.5}, what, attributes);
+        y += 22;
+    };
+    std::size_t hidden_count = 0, small_count = 0;
     for (const PlaneLabel label : {PlaneLabel::kFloor, PlaneLabel::kCeiling, PlaneLabel::kWall,
                                    PlaneLabel::kHorizontal, PlaneLabel::kOther, PlaneLabel::kUnknown}) {
-        const auto count = std::count_if(numbered.begin(), numbered.end(),
-                                         [&](const MapPlane* plane) { return plane->label == label; });
+        std::size_t count = 0, hidden = 0;
+        for (const Shown& shown : planes) {
+            if (shown.plane->label != label) continue;
+            ++count;
+            hidden += shown.drawn ? 0 : 1;
+            small_count += shown.drawn && !shown.numbered ? 1 : 0;
+        }
+        hidden_count += hidden;
         if (count == 0) continue;
-        svg += "<circle cx=\"20\" cy=\"" + text(y) + "\" r=\"8\" fill=\"" + label_color(label) +
-               "\" stroke=\"#555\" stroke-width=\"0.7\"/><text x=\"34\" y=\"" + text(y + 4.5) + "\">" +
-               label_name(label) + " (" + std::to_string(count) + ")</text>\n";
-        y += 22;
+        line("<rect x=\"" + text(x) + "\" y=\"" + text(y - 7) + "\" width=\"18\" height=\"14\" fill=\"" +
+                 css(label_color(label)) + "\" stroke=\"#555\" stroke-width=\"0.7\"/>",
+             std::string(label_name(label)) + " (" + std::to_string(count) + ")" +
+                 (hidden == 0       ? ""
+                  : hidden == count ? ", not drawn"
+                                    : ", " + std::to_string(hidden) + " not drawn"));
     }
+    line("<path d=\"" + move_to({x, y}) + "h18\" stroke=\"" + css(kTrajectoryColor) +
+             "\" stroke-width=\"2\"/>",
+         "trajectory, from the green dot");
+    const char* small = "font-size=\"11\" fill=\"#555\"";
+    if (hidden_count > 0) line("", count_of(hidden_count, "plane") + " not drawn: seen from below", small);
+    if (small_count > 0)
+        line("", std::to_string(small_count) + " without number: under " + fixed(kNumberedArea_m2, 2) + " m²",
+             small);
+    if (all > planes.size()) line("", std::to_string(all - planes.size()) + " without outline", small);
     return svg;
 }
 
@@ -197,11 +260,14 @@ std::string legend(const std::vector<const MapPlane*>& numbered) {
 std::string overhead_svg(const PlaneMap& map, const Trajectory& trajectory) {
     const Eigen::Matrix3d level = level_from_world(map, up_of(map, trajectory));
     const auto height = [&](const MapPlane* plane) { return level.row(2).dot(plane->center.cast<double>()); };
-    std::vector<const MapPlane*> surfaces, walls, numbered;
+    std::vector<const MapPlane*> surfaces, walls;
+    std::vector<Shown> shown;
     std::vector<Eigen::Vector2d> extent;
     for (const MapPlane* plane : drawable_planes(map)) {
         const double upward = level.row(2).dot(plane->normal.cast<double>());
-        if (upward < -0.35) continue;
+        const bool drawn = upward >= -0.35;
+        shown.push_back({plane, drawn, drawn && plane->area >= kNumberedArea_m2});
+        if (!drawn) continue;
         (upward > 0.35 ? surfaces : walls).push_back(plane);
         for (const auto& ring : world_rings(*plane))
             for (const auto& p : ring) extent.push_back((level * p).head<2>());
@@ -211,31 +277,32 @@ std::string overhead_svg(const PlaneMap& map, const Trajectory& trajectory) {
     std::stable_sort(surfaces.begin(), surfaces.end(),
                      [&](auto* a, auto* b) { return height(a) < height(b); });
 
-    const Fit fit(extent);
+    const Fit fit(extent, drawing_area(true));
     const auto project = [&](const Eigen::Vector3d& p) { return fit((level * p).head<2>()); };
     std::string shapes, labels;
     Numbers numbers;
     for (const MapPlane* plane : surfaces) {
-        const Rgb color = plane_color(plane->id);
+        const Rgb color = label_color(plane->label);
         shapes += "<path d=\"" + path(world_rings(*plane), project) + "\" fill-rule=\"evenodd\" fill=\"" +
-                  css(color) + "\" fill-opacity=\"0.55\" stroke=\"" + css(color, 0.6) +
+                  css(color) + "\" fill-opacity=\"0.8\" stroke=\"" + css(color, 0.6) +
                   "\" stroke-width=\"0.8\">" + tooltip(*plane) + "</path>\n";
     }
     for (const MapPlane* plane : walls) {
         std::string d;
         for (const auto& [from, to] : footprint(*plane, level)) d += move_to(fit(from)) + line_to(fit(to));
-        shapes += "<path d=\"" + d + "\" fill=\"none\" stroke=\"" + css(plane_color(plane->id), 0.75) +
+        shapes += "<path d=\"" + d + "\" fill=\"none\" stroke=\"" + css(label_color(plane->label)) +
                   "\" stroke-width=\"4\">" + tooltip(*plane) + "</path>\n";
     }
     for (const auto* group : {&walls, &surfaces}) {
         for (const MapPlane* plane : *group) {
             if (plane->area < kNumberedArea_m2) continue;
             labels += numbers.place(*plane, project(plane->center.cast<double>()));
-            numbered.push_back(plane);
         }
     }
-    return page("Planes seen from above", shapes + trajectory_line(trajectory, project) + labels +
-                                              scale_bar(fit.scale()) + legend(numbered));
+    return page(count_of(map.planes.size(), "plane") + " from above",
+                "walls and other upright planes as lines; " + up_text(map),
+                shapes + trajectory_line(trajectory, project) + labels + scale_bar(fit.scale()) +
+                    legend(shown, map.planes.size()));
 }
 
 namespace {
@@ -347,6 +414,59 @@ std::vector<Drawn> painters_order(std::vector<Drawn> planes, const Eigen::Vector
     return order;
 }
 
+/// A length that shows the scale of a perspective: true at its own place, at the front edge of the floor.
+struct SpaceBar {
+    Eigen::Vector3d from, to;
+    Eigen::Vector3d tick;  ///< across it
+    double length = 0;
+};
+
+/// Along the lower edge of the planes' level box that is nearest to the viewer; nothing without planes.
+std::optional<SpaceBar> bar_before(const std::vector<const MapPlane*>& planes, const Eigen::Matrix3d& level,
+                                   const View& view) {
+    Eigen::Vector3d low = Eigen::Vector3d::Constant(1e300), high = -low;
+    for (const MapPlane* plane : planes) {
+        for (const auto& ring : world_rings(*plane)) {
+            for (const Eigen::Vector3d& p : ring) {
+                low = low.cwiseMin(level * p);
+                high = high.cwiseMax(level * p);
+            }
+        }
+    }
+    if (!(low.array() <= high.array()).all()) return std::nullopt;
+    const Eigen::Vector3d eye = level * view.eye, middle = 0.5 * (low + high), size = high - low;
+    const double outside = 0.03 * size.norm();
+    SpaceBar best;
+    double nearest = 1e300;
+    for (const int axis : {0, 1}) {
+        const int across = 1 - axis;
+        for (const double side : {-1.0, 1.0}) {
+            Eigen::Vector3d at = middle, tick = Eigen::Vector3d::Zero();
+            at.z() = low.z();
+            at(across) += side * (0.5 * size(across) + outside);
+            tick(across) = side * 0.4 * outside;
+            if ((at - eye).norm() >= nearest) continue;
+            nearest = (at - eye).norm();
+            const double length = round_length(std::max(0.4 * size(axis), 0.01));
+            Eigen::Vector3d half = Eigen::Vector3d::Zero();
+            half(axis) = 0.5 * length;
+            best = {level.transpose() * (at - half), level.transpose() * (at + half),
+                    level.transpose() * tick, length};
+        }
+    }
+    return best;
+}
+
+template <typename Project>
+std::string drawn_bar(const SpaceBar& bar, const Project& project) {
+    const Eigen::Vector2d below = project(0.5 * (bar.from + bar.to) + bar.tick);
+    return "<path d=\"" + move_to(project(bar.from + bar.tick)) + line_to(project(bar.from)) +
+           line_to(project(bar.to)) + line_to(project(bar.to + bar.tick)) +
+           "\" fill=\"none\" stroke=\"black\" stroke-width=\"1.5\"/>\n" +
+           words(below + Eigen::Vector2d(0, 18), metres(bar.length) + " here; further away smaller",
+                 "text-anchor=\"middle\"");
+}
+
 }  // namespace
 
 std::string perspective_svg(const PlaneMap& map, const Trajectory& trajectory) {
@@ -361,7 +481,9 @@ std::string perspective_svg(const PlaneMap& map, const Trajectory& trajectory) {
         for (const auto& ring : world_rings(*plane))
             for (const auto& p : ring) extent.push_back(view(p));
     }
-    const Fit fit(extent);
+    const auto bar = bar_before(visible, level, view);
+    if (bar) extent.insert(extent.end(), {view(bar->from), view(bar->to)});
+    const Fit fit(extent, drawing_area(false));
     const auto project = [&](const Eigen::Vector3d& p) { return fit(view(p)); };
 
     std::vector<Drawn> drawn;
@@ -403,7 +525,12 @@ std::string perspective_svg(const PlaneMap& map, const Trajectory& trajectory) {
         const Eigen::Vector2d at = project(p.position.cast<double>());
         body += "<circle cx=\"" + text(at.x()) + "\" cy=\"" + text(at.y()) + "\" r=\"3.5\" fill=\"#222\"/>\n";
     }
-    return page("Planes in perspective", body + trajectory_line(trajectory, project));
+    const std::size_t hidden = map.planes.size() - visible.size();
+    return page(count_of(map.planes.size(), "plane") + " in perspective",
+                "from above a corner; a colour a plane" +
+                    (hidden == 0 ? "" : "; " + std::to_string(hidden) + " that face away are not drawn") +
+                    "; " + up_text(map),
+                body + trajectory_line(trajectory, project) + (bar ? drawn_bar(*bar, project) : ""));
 }
 
 }  // namespace planemap

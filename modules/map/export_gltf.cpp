@@ -14,7 +14,8 @@ using Json = nlohmann::ordered_json;
 
 // Of the specification.
 constexpr std::uint32_t kMagic = 0x46546C67, kVersion = 2, kJsonChunk = 0x4E4F534A, kBinaryChunk = 0x004E4942;
-constexpr int kFloat = 5126, kUint32 = 5125, kArrayBuffer = 34962, kElementArrayBuffer = 34963;
+constexpr int kFloat = 5126, kUint32 = 5125, kArrayBuffer = 34962, kElementArrayBuffer = 34963,
+              kLineStrip = 3;
 
 void put(std::string& bytes, std::uint32_t value) {
     for (int shift = 0; shift < 32; shift += 8) bytes.push_back(static_cast<char>(value >> shift & 0xff));
@@ -35,15 +36,24 @@ double linear(std::uint8_t channel) {
     return std::round(1e4 * light) / 1e4;
 }
 
-/// From the world to glTF's axes: y up, z level.
-Json root_rotation(const PlaneMap& map) {
-    Eigen::Matrix3d y_up;
-    y_up << 1, 0, 0, 0, 0, 1, 0, -1, 0;
-    const Eigen::Quaterniond q(y_up * level_from_world(map, up_of(map, {})));
-    Json json = Json::array();
+/// The node that turns the world to glTF's axes, y up, z level.
+Json root_node(const UprightFrame& frame) {
+    const Eigen::Matrix3d y_up = frame.y_up_from_world();
+    const Eigen::Quaterniond q(y_up);
+    Json rotation = Json::array(), notes = Json::array();
     for (const double value : {q.x(), q.y(), q.z(), q.w()})
-        json.push_back(std::round(1e9 * value) / 1e9 + 0.0);
-    return json;
+        rotation.push_back(std::round(1e9 * value) / 1e9 + 0.0);
+    for (const std::string& note : frame.notes(y_up, 'y')) notes.push_back(note);
+    return {{"name", "planemap"}, {"rotation", rotation}, {"extras", {{"frame", notes}}}};
+}
+
+Json material(const std::string& name, const Rgb& color) {
+    return {{"name", name},
+            {"pbrMetallicRoughness",
+             {{"baseColorFactor", {linear(color.r), linear(color.g), linear(color.b), 1.0}},
+              {"metallicFactor", 0.0},
+              {"roughnessFactor", 1.0}}},
+            {"doubleSided", true}};
 }
 
 /// Collects meshes into the arrays of a glTF file.
@@ -71,13 +81,7 @@ class Scene {
         accessors[static_cast<std::size_t>(first_accessor)]["min"] = json_of(low);
         accessors[static_cast<std::size_t>(first_accessor)]["max"] = json_of(high);
 
-        const Rgb color = plane_color(plane.id);
-        materials.push_back({{"name", "plane_" + std::to_string(plane.id)},
-                             {"pbrMetallicRoughness",
-                              {{"baseColorFactor", {linear(color.r), linear(color.g), linear(color.b), 1.0}},
-                               {"metallicFactor", 0.0},
-                               {"roughnessFactor", 1.0}}},
-                             {"doubleSided", true}});
+        materials.push_back(material("plane_" + std::to_string(plane.id), plane_color(plane.id)));
         const Json attributes = {{"POSITION", first_accessor}, {"NORMAL", first_accessor + 1}};
         const Json primitive = {
             {"attributes", attributes}, {"indices", first_accessor + 2}, {"material", index}};
@@ -90,8 +94,27 @@ class Scene {
                            {"area_m2", std::round(1e4 * static_cast<double>(plane.area)) / 1e4}}}});
     }
 
-    std::string glb(const Json& rotation) const {
-        Json root = {{"name", "planemap"}, {"rotation", rotation}};
+    void add(const std::vector<Eigen::Vector3d>& way) {
+        if (way.size() < 2) return;  // a line strip has two points at least
+        const int index = static_cast<int>(meshes.size());
+        const Json attributes = {{"POSITION", accessors.size()}};
+        Eigen::Vector3f low = way[0].cast<float>(), high = low;
+        accessors.push_back(accessor(0, positions.size(), kFloat, static_cast<int>(way.size()), "VEC3"));
+        for (const Eigen::Vector3d& p : way) {
+            const Eigen::Vector3f v = p.cast<float>();
+            put(positions, v);
+            low = low.cwiseMin(v);
+            high = high.cwiseMax(v);
+        }
+        accessors.back()["min"] = json_of(low);
+        accessors.back()["max"] = json_of(high);
+        materials.push_back(material("trajectory", kTrajectoryColor));
+        const Json primitive = {{"attributes", attributes}, {"material", index}, {"mode", kLineStrip}};
+        meshes.push_back({{"name", "trajectory"}, {"primitives", Json::array({primitive})}});
+        nodes.push_back({{"name", "trajectory"}, {"mesh", index}, {"extras", {{"label", "trajectory"}}}});
+    }
+
+    std::string glb(Json root) const {
         for (std::size_t i = 1; i <= nodes.size(); ++i) root["children"].push_back(i);
         Json all_nodes = Json::array({root});
         for (const Json& node : nodes) all_nodes.push_back(node);
@@ -137,10 +160,13 @@ class Scene {
         const auto view = [](std::size_t offset, std::size_t length, int target) -> Json {
             return {{"buffer", 0}, {"byteOffset", offset}, {"byteLength", length}, {"target", target}};
         };
-        Json all = Json::array(
-            {view(0, positions.size(), kArrayBuffer), view(positions.size(), normals.size(), kArrayBuffer),
-             view(positions.size() + normals.size(), indices.size(), kElementArrayBuffer)});
-        all[0]["byteStride"] = all[1]["byteStride"] = 3 * sizeof(float);
+        Json all = Json::array({view(0, positions.size(), kArrayBuffer)});
+        if (!indices.empty()) {  // there is more than a trajectory
+            all.push_back(view(positions.size(), normals.size(), kArrayBuffer));
+            all.push_back(view(positions.size() + normals.size(), indices.size(), kElementArrayBuffer));
+            all[1]["byteStride"] = 3 * sizeof(float);
+        }
+        all[0]["byteStride"] = 3 * sizeof(float);
         return all;
     }
 
@@ -150,10 +176,11 @@ class Scene {
 
 }  // namespace
 
-std::string planes_glb(const PlaneMap& map) {
+std::string planes_glb(const PlaneMap& map, const Trajectory& trajectory) {
     Scene scene;
     for (const MapPlane* plane : drawable_planes(map)) scene.add(*plane);
-    return scene.glb(root_rotation(map));
+    scene.add(walked(trajectory));
+    return scene.glb(root_node(upright_frame(map, trajectory)));
 }
 
 }  // namespace planemap

@@ -85,6 +85,45 @@ Eigen::Matrix3d level_from_world(const PlaneMap& map, const Eigen::Vector3d& up)
     return Eigen::AngleAxisd(-turn, Eigen::Vector3d::UnitZ()) * axes.transpose();
 }
 
+Eigen::Matrix3d UprightFrame::y_up_from_world() const {
+    Eigen::Matrix3d y_up;
+    y_up << 1, 0, 0, 0, 0, 1, 0, -1, 0;
+    return y_up * level_from_world;
+}
+
+std::vector<std::string> UprightFrame::notes(const Eigen::Matrix3d& file_from_world, char up) const {
+    std::string rows;
+    for (int i = 0; i < 3; ++i) {
+        rows += i == 0 ? "" : "; ";
+        for (int j = 0; j < 3; ++j) rows += (j == 0 ? "" : " ") + fixed(file_from_world(i, j), 9);
+    }
+    const std::string axis(1, up);
+    return {"metres; " + axis + " is up, x runs along most walls, the origin is the world's",
+            up_is_known ? "up is as the planes tell it"
+                        : "up is not known from the planes: " + axis + " is against the first camera's y",
+            "position = R * p_world with R, row by row: " + rows};
+}
+
+UprightFrame upright_frame(const PlaneMap& map, const Trajectory& trajectory) {
+    // Unlike a drawing, a file can be turned back by whoever knows the first camera: no average here.
+    const Trajectory first(trajectory.begin(), trajectory.begin() + (trajectory.empty() ? 0 : 1));
+    return {level_from_world(map, up_of(map, first)), !map.up.isZero()};
+}
+
+std::vector<Eigen::Vector3d> walked(const Trajectory& trajectory) {
+    constexpr double kStep_m = 0.01;
+    std::vector<Eigen::Vector3d> way;
+    Eigen::Vector3d last = Eigen::Vector3d::Zero();
+    for (const StampedPose& pose : trajectory) {
+        const Eigen::Vector3d p = pose.world_from_camera.translation();
+        if (!p.allFinite()) continue;
+        last = p;
+        if (way.empty() || (p - way.back()).norm() >= kStep_m) way.push_back(p);
+    }
+    if (!way.empty() && way.back() != last) way.push_back(last);
+    return way;
+}
+
 std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> footprint(const MapPlane& plane,
                                                                    const Eigen::Matrix3d& level_from_world) {
     const Eigen::Vector3d normal = level_from_world * plane.normal.cast<double>();

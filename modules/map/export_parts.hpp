@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/image.hpp"
 #include "core/plane_map.hpp"
 #include "core/trajectory.hpp"
 
@@ -37,6 +38,23 @@ Eigen::Vector3d up_of(const PlaneMap& map, const Trajectory& trajectory);
 
 /// World to a level frame: z is up, x runs along most walls. A rotation.
 Eigen::Matrix3d level_from_world(const PlaneMap& map, const Eigen::Vector3d& up);
+
+/// How the files in three dimensions stand: turned about the world's origin so that up is up.
+struct UprightFrame {
+    Eigen::Matrix3d level_from_world;  ///< to z up, x along most walls
+    bool up_is_known = false;          ///< by the map; otherwise up is against the first camera's y
+
+    /// To y up, x along most walls.
+    Eigen::Matrix3d y_up_from_world() const;
+    /// What a file says of its frame, a line each; the rotation is one of the two above, and `up` its axis.
+    std::vector<std::string> notes(const Eigen::Matrix3d& file_from_world, char up) const;
+};
+UprightFrame upright_frame(const PlaneMap& map, const Trajectory& trajectory);
+
+/// The way of the camera in the world frame: finite positions, each at least a centimetre from the one
+/// before, and the last.
+std::vector<Eigen::Vector3d> walked(const Trajectory& trajectory);
+constexpr Rgb kTrajectoryColor{179, 20, 42};
 
 /// Where an upright plane stands, seen from above: pieces in x and y of the level frame. Parts above one
 /// another are one piece.

@@ -190,7 +190,7 @@ TEST(TrajectoryFile, LinesOfDifferentFormsAreRefused) {
     EXPECT_THAT(error_of(folder, "# timestamp tx ty tz qx qy qz qw\n" + kitti),
                 HasSubstr("t.txt:2: 12 numbers"));
     EXPECT_THAT(error_of(folder, tum + "1500000000033333499 0 0 0 0 0 0 1\n"),
-                AllOf(HasSubstr("t.txt:2:"), HasSubstr("in ns")));
+                AllOf(HasSubstr("t.txt:2:"), HasSubstr("nanoseconds")));
 }
 
 }  // namespace

@@ -59,7 +59,7 @@ Glb read_glb(const std::string& bytes) {
 
 TEST(PlanesGlb, HasANodeAPlaneWithItsArea) {
     const PlaneMap map = corner();
-    const Glb glb = read_glb(planes_glb(map));
+    const Glb glb = read_glb(planes_glb(map, {}));
     ASSERT_EQ(glb.json["nodes"].size(), 4u);
     EXPECT_EQ(glb.json["nodes"][0]["children"], Json::parse("[1, 2, 3]"));
     for (std::size_t i = 0; i < map.planes.size(); ++i) {
@@ -96,28 +96,44 @@ TEST(PlanesGlb, HasANodeAPlaneWithItsArea) {
         }
         EXPECT_NEAR(area, plane.area, 1e-4);
     }
-    EXPECT_EQ(planes_glb(map), planes_glb(corner()));
+    EXPECT_EQ(planes_glb(map, {}), planes_glb(corner(), {}));
 }
 
-TEST(PlanesGlb, StandsUpright) {
-    for (const Eigen::Vector3f& up :
-         {Eigen::Vector3f(0, 0, 1), Eigen::Vector3f(0.6f, -0.8f, 0), Eigen::Vector3f(0, -1, 0)}) {
-        PlaneMap map = corner();
-        map.up = up;
-        const auto q = read_glb(planes_glb(map)).json["nodes"][0]["rotation"].get<std::vector<double>>();
+TEST(PlanesGlb, StandsUprightAndCarriesTheTrajectory) {
+    const Trajectory walk = scene::walk();
+    for (const PlaneMap& map : scene::maps_of_several_ups()) {
+        const Glb glb = read_glb(planes_glb(map, walk));
+        const auto q = glb.json["nodes"][0]["rotation"].get<std::vector<double>>();
         const Eigen::Quaterniond rotation(q[3], q[0], q[1], q[2]);
         EXPECT_NEAR(rotation.norm(), 1, 1e-6);
-        EXPECT_NEAR((rotation * up.cast<double>()).y(), 1, 1e-6);
+        EXPECT_NEAR((rotation * scene::expected_up(map, walk)).y(), 1, 1e-6);
+        EXPECT_TRUE(scene::said_rotation(glb.json["nodes"][0]["extras"]["frame"].dump())
+                        .isApprox(rotation.toRotationMatrix(), 1e-6));
+        const Json& node = glb.json["nodes"].back();
+        EXPECT_EQ(node["name"], "trajectory");
+        const Json& primitive = glb.json["meshes"][node["mesh"].get<std::size_t>()]["primitives"][0];
+        EXPECT_EQ(primitive["mode"], 3) << "a line strip";
+        const Json& positions = glb.json["accessors"][primitive["attributes"]["POSITION"].get<std::size_t>()];
+        ASSERT_EQ(positions["count"], walk.size());
+        for (std::size_t i = 0; i < walk.size(); ++i)
+            EXPECT_TRUE(glb.vector(positions, i)
+                            .isApprox(walk[i].world_from_camera.translation().cast<float>(), 1e-5f));
     }
 }
 
+TEST(PlanesGlb, OfATrajectoryAlone) {
+    const Glb glb = read_glb(planes_glb({}, scene::walk()));
+    EXPECT_EQ(glb.json["bufferViews"].size(), 1u) << "empty ones are not allowed";
+    EXPECT_EQ(glb.json["meshes"].size(), 1u);
+}
+
 TEST(PlanesGlb, OfAnEmptyMapAndOfNan) {
-    const Glb empty = read_glb(planes_glb({}));
+    const Glb empty = read_glb(planes_glb({}, {}));
     EXPECT_TRUE(empty.binary.empty());
     EXPECT_FALSE(empty.json.contains("meshes"));
     PlaneMap map = corner();
     map.planes[0].normal.setConstant(std::numeric_limits<float>::quiet_NaN());
-    const Glb rest = read_glb(planes_glb(map));
+    const Glb rest = read_glb(planes_glb(map, {}));
     EXPECT_EQ(rest.json["meshes"].size(), 2u);
     EXPECT_EQ(rest.json.dump().find("null"), std::string::npos);
 }

@@ -44,6 +44,23 @@ TEST(LevelFromWorld, TurnsUpToZAndWallsToTheAxes) {
     }
 }
 
+TEST(Walked, LeavesOutSmallStepsAndWhatIsNotFinite) {
+    Trajectory trajectory;
+    for (int i = 0; i <= 1000; ++i) {
+        Pose pose = Pose::Identity();
+        pose.translation().x() = 0.001 * i;
+        trajectory.push_back({i, pose});
+    }
+    trajectory[500].world_from_camera.translation().setConstant(std::numeric_limits<double>::quiet_NaN());
+    const std::vector<Eigen::Vector3d> way = walked(trajectory);
+    EXPECT_LE(way.size(), 101u);
+    EXPECT_GE(way.size(), 90u);
+    EXPECT_EQ(way.front().x(), 0);
+    EXPECT_EQ(way.back().x(), 1) << "the last one is kept, however near";
+    for (const Eigen::Vector3d& p : way) EXPECT_TRUE(p.allFinite());
+    EXPECT_TRUE(walked({}).empty());
+}
+
 TEST(DrawablePlanes, AreFiniteAndHaveAnOutline) {
     PlaneMap map = scene::corner();
     ASSERT_EQ(drawable_planes(map).size(), 3u);

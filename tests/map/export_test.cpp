@@ -22,18 +22,20 @@ using ::testing::Not;
 struct Ply {
     std::vector<Eigen::Vector3f> vertices, normals;
     std::vector<std::array<std::int32_t, 3>> faces;
+    std::vector<std::array<std::int32_t, 2>> edges;
 };
 
 Ply read_ply(const std::string& bytes) {
     Ply ply;
     std::istringstream in(bytes);
     std::string line;
-    std::size_t vertices = 0, faces = 0;
+    std::size_t vertices = 0, faces = 0, edges = 0;
     std::getline(in, line);
     EXPECT_EQ(line, "ply");
     while (std::getline(in, line) && line != "end_header") {
         std::sscanf(line.c_str(), "element vertex %zu", &vertices);
         std::sscanf(line.c_str(), "element face %zu", &faces);
+        std::sscanf(line.c_str(), "element edge %zu", &edges);
     }
     for (std::size_t i = 0; i < vertices; ++i) {
         std::array<float, 6> values;
@@ -47,6 +49,11 @@ Ply read_ply(const std::string& bytes) {
         std::array<std::int32_t, 3> face;
         in.read(reinterpret_cast<char*>(face.data()), sizeof face);
         ply.faces.push_back(face);
+    }
+    for (std::size_t i = 0; i < edges; ++i) {
+        std::array<std::int32_t, 2> edge;
+        in.read(reinterpret_cast<char*>(edge.data()), sizeof edge);
+        ply.edges.push_back(edge);
     }
     EXPECT_TRUE(in.good());
     EXPECT_EQ(in.peek(), std::char_traits<char>::eof());
@@ -92,7 +99,7 @@ TEST(PlanesJson, OfAnEmptyMapAndOfNan) {
 
 TEST(PlanesPly, HasTheAreaAndNormalsOfThePlanes) {
     const PlaneMap map = corner();
-    const Ply ply = read_ply(planes_ply(map));
+    const Ply ply = read_ply(planes_ply(map, walk()));
     double area = 0, expected = 0;
     for (const auto& face : ply.faces) {
         std::array<Eigen::Vector3f, 3> p;
@@ -107,11 +114,38 @@ TEST(PlanesPly, HasTheAreaAndNormalsOfThePlanes) {
     }
     for (const MapPlane& plane : map.planes) expected += static_cast<double>(plane.area);
     EXPECT_NEAR(area, expected, 1e-5);
-    EXPECT_TRUE(read_ply(planes_ply({})).faces.empty());
-    EXPECT_THAT(planes_ply(map), HasSubstr("comment plane 3 wall, "));
+    EXPECT_TRUE(read_ply(planes_ply({}, {})).faces.empty());
+    EXPECT_THAT(planes_ply(map, walk()), HasSubstr("comment plane 3 wall, "));
     PlaneMap spoilt = map;
     spoilt.planes[1].center.setConstant(std::numeric_limits<float>::quiet_NaN());
-    EXPECT_LT(read_ply(planes_ply(spoilt)).faces.size(), ply.faces.size());
+    EXPECT_LT(read_ply(planes_ply(spoilt, walk())).faces.size(), ply.faces.size());
+}
+
+TEST(PlanesPly, StandsUprightAndCarriesTheTrajectory) {
+    for (const PlaneMap& map : scene::maps_of_several_ups()) {
+        const std::string bytes = planes_ply(map, walk());
+        const Eigen::Matrix3d rotation = scene::said_rotation(bytes);
+        EXPECT_NEAR(rotation.determinant(), 1, 1e-6);
+        EXPECT_NEAR((rotation * scene::expected_up(map, walk())).z(), 1, 1e-6);
+        EXPECT_THAT(bytes, HasSubstr(map.up.isZero() ? "z is against the first camera's y"
+                                                     : "as the planes tell it"));
+        const Ply ply = read_ply(bytes);
+        // The floor's corners, and the camera's way, each turned from the world.
+        const Pose world_from_floor = map.planes[0].world_from_plane();
+        for (std::size_t i = 0; i < 4; ++i) {
+            const Eigen::Vector3d world = rotation.transpose() * ply.vertices[i].cast<double>();
+            EXPECT_NEAR((world_from_floor.inverse() * world).z(), 0, 1e-5);
+            EXPECT_NEAR(world.head<2>().cwiseAbs().minCoeff(), 1, 1e-5);
+        }
+        ASSERT_EQ(ply.edges.size(), 4u);
+        for (std::size_t i = 0; i < ply.edges.size(); ++i) {
+            for (const std::size_t end : {0u, 1u}) {
+                const Eigen::Vector3d at =
+                    ply.vertices[static_cast<std::size_t>(ply.edges[i][end])].cast<double>();
+                EXPECT_TRUE(at.isApprox(rotation * walk()[i + end].world_from_camera.translation(), 1e-5));
+            }
+        }
+    }
 }
 
 TEST(PlaneColor, TellsNeighbouringIdsApart) {
@@ -139,6 +173,55 @@ TEST(Drawings, TellTheLabels) {
     EXPECT_THAT(overhead_svg(corner(), walk()), HasSubstr(">wall (1)</text>"));
     EXPECT_THAT(overhead_svg(corner(), walk()), Not(HasSubstr(">ceiling (1)</text>"))) << "not drawn";
     EXPECT_THAT(perspective_svg(corner(), walk()), HasSubstr("<title>plane 1, floor, 4.00 m²</title>"));
+}
+
+/// The attribute of the first element after `after` in the text.
+std::string attribute_after(const std::string& svg, const std::string& after, const std::string& name) {
+    const auto from = svg.find(name + "=\"", svg.find(after)) + name.size() + 2;
+    return svg.substr(from, svg.find('"', from) - from);
+}
+
+TEST(Drawings, TheLegendHasTheColoursOfTheDrawingAndCountsAllPlanes) {
+    PlaneMap map = corner();
+    map.planes.push_back(
+        scene::plane_of(20, {scene::facing({0.5, 0.5, 0.7}, {0, 0, 1}, {1, 0, 0}), 0.1, 0.1, {}}));
+    map.planes.back().label = PlaneLabel::kHorizontal;
+    map.planes.push_back(scene::plane_of(21, {scene::facing({0, 0, 0}, {0, 0, 1}, {1, 0, 0}), 1, 1, {}}));
+    map.planes.back().outline = {};
+    const std::string svg = overhead_svg(map, walk());
+    for (const char* text :
+         {">5 planes from above</text>", ">floor (1)</text>", ">ceiling (1), not drawn</text>",
+          ">horizontal (1)</text>", ">1 plane not drawn: seen from below</text>",
+          ">1 without number: under 0.15 m²</text>", ">1 without outline</text>"})
+        EXPECT_THAT(svg, HasSubstr(text));
+    // The floor is filled with what the legend shows beside its word, the wall's line drawn with its own.
+    const auto floor_at = svg.find("plane 1, floor");
+    const auto shape = svg.rfind("<path", floor_at);
+    const std::string fill = attribute_after(svg.substr(shape), "evenodd", "fill");
+    const auto swatch = svg.rfind("<rect", svg.find(">floor (1)</text>"));
+    EXPECT_EQ(attribute_after(svg.substr(swatch), "<rect", "fill"), fill);
+    const auto wall = svg.rfind("<path", svg.find("plane 3, wall"));
+    const auto wall_swatch = svg.rfind("<rect", svg.find(">wall (1)</text>"));
+    EXPECT_EQ(attribute_after(svg.substr(wall), "<path", "stroke"),
+              attribute_after(svg.substr(wall_swatch), "<rect", "fill"));
+    // Beside the drawing: no shape reaches as far right as the legend.
+    const double legend_x = std::stod(attribute_after(svg.substr(swatch), "<rect", "x"));
+    for (auto at = svg.find(" d=\"M"); at != std::string::npos; at = svg.find(" d=\"M", at + 1)) {
+        const std::string d = attribute_after(svg.substr(at), " d", "d");
+        if (d.find('h') != std::string::npos) continue;  // the legend's own line
+        for (auto i = d.find_first_of("ML"); i != std::string::npos; i = d.find_first_of("ML", i + 1))
+            EXPECT_LT(std::stod(d.substr(i + 1)), legend_x) << d;
+    }
+}
+
+TEST(Drawings, HaveATitleAndAScale) {
+    const std::string above = overhead_svg(corner(), walk()), perspective = perspective_svg(corner(), walk());
+    EXPECT_THAT(above, HasSubstr(">0.5 m</text>"));
+    EXPECT_THAT(perspective, HasSubstr(">3 planes in perspective</text>"));
+    EXPECT_THAT(perspective, HasSubstr(">0.5 m here; further away smaller</text>"));
+    PlaneMap unknown = corner();
+    unknown.up.setZero();
+    EXPECT_THAT(overhead_svg(unknown, walk()), HasSubstr("up: as the camera was held"));
 }
 
 TEST(Drawings, LeaveOutWhatIsNotFinite) {

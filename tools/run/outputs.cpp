@@ -116,10 +116,10 @@ Json write_outputs(const std::filesystem::path& folder, const std::string& input
     const Trajectory trajectory = pipeline.trajectory();
     write_trajectory(folder / "trajectory.txt", trajectory);
     write_file(folder / "planes.json", planes_json(map, pipeline.map().mapper().sightings()));
-    write_file(folder / "planes.ply", planes_ply(map));
-    write_file(folder / "planes.obj", planes_obj(map));
+    write_file(folder / "planes.ply", planes_ply(map, trajectory));
+    write_file(folder / "planes.obj", planes_obj(map, trajectory));
     write_file(folder / "planes.mtl", planes_mtl(map));
-    write_file(folder / "planes.glb", planes_glb(map));
+    write_file(folder / "planes.glb", planes_glb(map, trajectory));
     write_file(folder / "floor_plan.geojson", floor_plan_geojson(map, trajectory));
     write_plane_map(folder / "plane_map.lcmlog", map);
     write_file(folder / "overhead.svg", overhead_svg(map, trajectory));
