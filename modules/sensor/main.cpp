@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cstdlib>
+
 #include "sensor/sensor_shell.hpp"
 #include "sensor/simulator/simulated_source.hpp"
 
@@ -10,9 +12,14 @@ int main(int argc, char** argv) {
     planemap::SourceOptions source;
     process.flags().add_positional("input", input,
                                    "TUM-layout folder, or sim:WORLD[?KEY=VALUE&...], see above");
+    bool check = false;
+    process.flags().add("check", check, "Only say whether input, flags and URL are good; nothing is sent");
     add_pacing_flags(process.flags(), options);
     add_encoding_flags(process.flags(), options);
     return process.run(argc, argv, [&](planemap::Bus& bus) {
-        return std::make_unique<planemap::SensorShell>(bus, planemap::open_source(input, source), options);
+        auto shell =
+            std::make_unique<planemap::SensorShell>(bus, planemap::open_source(input, source), options);
+        if (check) std::exit(0);
+        return shell;
     });
 }

@@ -7,6 +7,7 @@
 
 #include "bench_odometry/child.hpp"
 #include "benchmark/choices.hpp"
+#include "results/result_folder.hpp"
 #include "sensor/simulator/simulated_source.hpp"
 #include "simulate/recording.hpp"
 
@@ -83,7 +84,6 @@ std::filesystem::path render(const SequenceInfo& info, const std::string& simula
     auto source = std::make_unique<sim::SimulatedSource>(sim::parse_simulator_name(simulator));
     const std::string prefix = info.name.substr(info.name.find(':') + 1) + "~";
     const std::string stem = prefix + fingerprint_of(info.simulator, *source);
-    std::filesystem::create_directories(options.cache);
     const auto size = static_cast<std::int64_t>(*source->size());
     const std::filesystem::path whole = options.cache / (stem + ".lcmlog");
     const bool part = options.frames > 0 && options.frames < size && !std::filesystem::exists(whole);
@@ -91,14 +91,24 @@ std::filesystem::path render(const SequenceInfo& info, const std::string& simula
     if (part) name.append("-").append(std::to_string(options.frames));
     const std::filesystem::path log = options.cache / (name + ".lcmlog");
     if (std::filesystem::exists(log)) return log;
+    ResultFolder results(options.cache, {name + ".lcmlog", name + ".txt"}, "." + name + ".part",
+                         ResultFolder::Leftovers::kRemove);
     remove_outdated(options.cache, prefix, stem);
-    std::filesystem::path truth_file = log;
-    write_trajectory(truth_file.replace_extension(".txt"), true_poses(*source));
+    results.make({name + ".txt", [&](const auto& file) { write_trajectory(file, true_poses(*source)); }});
     Bus bus("memq://");
     SensorShellOptions encoding;
     encoding.speed = 0;
     SensorShell sensor(bus, std::move(source), encoding);
-    record(sensor, bus, part ? options.frames : 0, log, on_frame);
+    try {
+        results.make({name + ".lcmlog", [&](const auto& file) {
+                          record(sensor, bus, part ? options.frames : 0, file, on_frame);
+                      }});
+        if (stop_requested()) throw std::runtime_error(log.string() + ": stopped before it was whole");
+        results.replace();
+    } catch (...) {
+        results.discard();
+        throw;
+    }
     return log;
 }
 

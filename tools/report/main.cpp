@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // planemap-report: prints the size report of a finished run.
-#include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "core/files.hpp"
 #include "messages/process.hpp"
+#include "results/standard_output.hpp"
 #include "run/report.hpp"
 
 int main(int argc, char** argv) {
@@ -28,8 +28,8 @@ int main(int argc, char** argv) {
             throw std::runtime_error(file.string() + ": " + error.what());
         }
         const std::string markdown = planemap::report_markdown(report);
+        planemap::print(markdown);
         planemap::write_file(folder / "report.md", markdown);
-        std::fputs(markdown.c_str(), stdout);
         return 0;
     });
 }

@@ -2,6 +2,7 @@
 #include "run/input.hpp"
 
 #include <bot_core/images_t.hpp>
+#include <chrono>
 #include <filesystem>
 #include <planemap/camera_info_t.hpp>
 #include <stdexcept>
@@ -24,7 +25,6 @@ class SensorInput : public Input {
     SensorInput(const std::string& name, Bus& bus)
         : folder_(name), shell_(bus, open_source(name), in_process()) {}
 
-    bool feed() override { return shell_.poll() >= 0; }
     std::int64_t frames() const override { return shell_.frames() + shell_.broken(); }
     std::optional<double> progress() const override {
         const auto size = shell_.source().size();
@@ -48,14 +48,17 @@ class SensorInput : public Input {
         if (!std::filesystem::is_regular_file(file, ignored)) return std::nullopt;
         return read_trajectory(file);
     }
-    void write_truth(const std::filesystem::path& folder) const override {
-        if (const auto* simulated = dynamic_cast<const sim::SimulatedSource*>(&shell_.source())) {
-            write_trajectory(folder / "groundtruth.txt", simulated->ground_truth());
-            sim::write_planes_truth(folder / "planes_truth.json", simulated->world());
-        }
+    std::vector<Result> truth_results() const override {
+        const auto* simulated = dynamic_cast<const sim::SimulatedSource*>(&shell_.source());
+        if (simulated == nullptr) return {};
+        return {
+            {"groundtruth.txt", [=](const auto& file) { write_trajectory(file, simulated->ground_truth()); }},
+            {"planes_truth.json",
+             [=](const auto& file) { sim::write_planes_truth(file, simulated->world()); }}};
     }
 
   private:
+    bool publish_next() override { return shell_.poll() >= 0; }
     static SensorShellOptions in_process() {
         SensorShellOptions options;
         options.speed = 0;
@@ -108,20 +111,6 @@ class LogInput : public Input {
         follow_camera_ = !has_camera;
     }
 
-    bool feed() override {
-        LogEvent event;
-        while (log_.next(event)) {
-            if (event.channel == channel_) {
-                bus_.publish_bytes(channels::kFrame, event.bytes);
-                ++frames_;
-                return true;
-            }
-            if (follow_camera_ && event.channel == channels::kCameraInfo) {
-                bus_.publish_bytes(channels::kCameraInfo, event.bytes);
-            }
-        }
-        return false;
-    }
     std::int64_t frames() const override { return frames_; }
     std::optional<double> progress() const override {
         return static_cast<double>(log_.bytes_read()) /
@@ -138,6 +127,21 @@ class LogInput : public Input {
     }
 
   private:
+    bool publish_next() override {
+        LogEvent event;
+        while (log_.next(event)) {
+            if (event.channel == channel_) {
+                bus_.publish_bytes(channels::kFrame, event.bytes);
+                ++frames_;
+                return true;
+            }
+            if (follow_camera_ && event.channel == channels::kCameraInfo) {
+                bus_.publish_bytes(channels::kCameraInfo, event.bytes);
+            }
+        }
+        return false;
+    }
+
     std::string name_;
     Bus& bus_;
     LogReader log_;
@@ -147,6 +151,16 @@ class LogInput : public Input {
 };
 
 }  // namespace
+
+bool Input::feed() {
+    const auto start = std::chrono::steady_clock::now();
+    const bool more = publish_next();
+    if (more) {
+        read_ms_.add(
+            std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+    }
+    return more;
+}
 
 std::unique_ptr<Input> open_input(const std::string& name, Bus& bus,
                                   const std::optional<CameraInfo>& camera) {

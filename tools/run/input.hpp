@@ -6,10 +6,13 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/camera.hpp"
+#include "core/histogram.hpp"
 #include "core/trajectory.hpp"
 #include "messages/bus.hpp"
+#include "results/result_folder.hpp"
 
 namespace planemap {
 
@@ -18,7 +21,7 @@ class Input {
   public:
     virtual ~Input() = default;
     /// Publishes up to and including the next frame; false when there is none.
-    virtual bool feed() = 0;
+    bool feed();
     /// Frames that were read, the broken ones included.
     virtual std::int64_t frames() const = 0;
     /// How far the input is read, 0 to 1; nothing if that is not known.
@@ -28,8 +31,15 @@ class Input {
     /// The true trajectory of the colour camera, if the input knows it (groundtruth.txt of a folder, the
     /// simulator).
     virtual std::optional<Trajectory> truth() const { return std::nullopt; }
-    /// Writes what only the simulator knows: groundtruth.txt and planes_truth.json.
-    virtual void write_truth(const std::filesystem::path&) const {}
+    /// What only the simulator knows: groundtruth.txt and planes_truth.json.
+    virtual std::vector<Result> truth_results() const { return {}; }
+    /// Time of each feed(), ms: reading and decoding files, or rendering.
+    const Histogram& read_ms() const { return read_ms_; }
+
+  private:
+    virtual bool publish_next() = 0;
+
+    Histogram read_ms_;
 };
 
 /// Opens a TUM-layout folder, an LCM log or a simulator name (sim:...). `camera` is for logs that do not

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // planemap-run: a recording to a plane map, all modules in one process.
 #include <spdlog/spdlog.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <cstdio>
-#include <nlohmann/json.hpp>
 
+#include "results/standard_output.hpp"
 #include "run/input.hpp"
+#include "run/interim.hpp"
 #include "run/outputs.hpp"
 #include "run/pipeline.hpp"
 #include "run/progress.hpp"
@@ -51,15 +50,69 @@ void add_run_flags(Flags& flags, RunOptions& options) {
     add_flags(flags, options.pipeline.octomap, "octomap-");
 }
 
-/// The output folder, made and tried, so that a run of an hour does not end in an error that could be seen at
-/// the start.
-void prepare_output(const std::filesystem::path& folder) {
-    std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    if (error) throw std::runtime_error(folder.string() + ": cannot be made: " + error.message());
-    if (::access(folder.c_str(), W_OK | X_OK) != 0 || !std::filesystem::is_directory(folder)) {
-        throw std::runtime_error(folder.string() + ": is no folder that can be written to");
+/// Feeds the input to its end, or until a signal asks to stop. Returns the error that ended it early, if one
+/// did: what was mapped until then is not lost.
+std::string map(const RunOptions& options, Input& input, Pipeline& pipeline, ResultFolder& folder) {
+    std::string error;
+    Progress progress(options.quiet);
+    InterimResults interim(folder);
+    try {
+        while (!stop_requested() && input.feed()) {
+            pipeline.settle();
+            progress.show(input, pipeline);
+            interim.write_if_due(pipeline);
+        }
+    } catch (const std::exception& failure) {
+        error = failure.what();
     }
+    progress.end();
+    if (stop_requested()) {
+        spdlog::warn("stopped after {} frames: writing what was mapped so far (another Ctrl-C ends at once)",
+                     input.frames());
+    }
+    spdlog::debug("kept what was mapped so far {} times: {:.1f} ms of CPU, {:.1f} ms by the clock",
+                  interim.times(), interim.cpu_ms(), interim.wall_ms());
+    pipeline.finish();
+    return error;
+}
+
+/// What is wrong with the results, a line each; the last says what became of them.
+std::vector<std::string> problems_of(const std::string& input_name, const Input& input,
+                                     const Pipeline& pipeline, const ResultFolder& folder,
+                                     const Outputs& outputs) {
+    std::vector<std::string> lines = outputs.failures;
+    const std::string earlier =
+        outputs.kept_earlier ? "; " + folder.path().string() + " keeps the results of an earlier run" : "";
+    const std::string aside = outputs.folder.empty() || outputs.folder == folder.path()
+                                  ? ""
+                                  : earlier + ", the new ones are in " + outputs.folder.string();
+    if (pipeline.estimates().empty()) {
+        lines.push_back(input_name + ": no frame of it could be used" + earlier);
+    } else if (tracked_frames(pipeline) == 0) {
+        lines.push_back(
+            input_name + ": none of its " + std::to_string(input.frames()) +
+            " frames could be tracked: no depth (all zero, or out of range) or nothing to follow in them" +
+            earlier);
+    } else if (!outputs.failures.empty()) {
+        lines.push_back(std::to_string(outputs.failures.size()) + " of the results could not be written" +
+                        (aside.empty() ? "; the others are in " + outputs.folder.string() : aside));
+    } else if (!aside.empty()) {
+        lines.push_back(input_name + ": no planes in its map" + aside);
+    }
+    return lines;
+}
+
+/// The report and where everything is, on standard output.
+void print_report(const Outputs& outputs) {
+    if (!outputs.report.is_null()) print(report_markdown(outputs.report));
+    if (outputs.folder.empty()) return;
+    std::string line = "\nIn " + outputs.folder.string() + ":";
+    for (const std::string& file : outputs.files) line += " " + file;
+    print(line + "\n");
+}
+
+void warn(const std::vector<std::string>& lines) {
+    for (const std::string& line : lines) spdlog::warn("{}", line);
 }
 
 int run(RunOptions options) {
@@ -72,40 +125,29 @@ int run(RunOptions options) {
     Bus bus("memq://");
     Pipeline pipeline(bus, options.pipeline);
     const std::unique_ptr<Input> input = open_input(options.input, bus, options.pipeline.camera);
-    prepare_output(options.output);
+    ResultFolder folder(options.output, result_names(options.output, *input));
+    warn(folder.take_notes());
 
     RunClock clock;
-    Progress progress(options.quiet);
-    while (!stop_requested() && input->feed()) {
-        pipeline.settle();
-        progress.show(*input, pipeline);
-    }
-    pipeline.finish();
+    const std::string error = map(options, *input, pipeline, folder);
     clock.stop();
-    progress.end();
-    if (stop_requested())
-        spdlog::warn("stopped after {} frames; what was mapped so far is written", input->frames());
     if (const GivenPoses* given = pipeline.given_poses(); given != nullptr && given->missing() > 0) {
         spdlog::warn("{}: no pose within 0.1 s of {} keyframes, which are not in the map",
                      options.poses.string(), given->missing());
     }
     if (!input->complaints().empty()) spdlog::warn("{}", input->complaints());
 
-    const nlohmann::ordered_json report =
-        write_outputs(options.output, options.input, *input, pipeline, clock);
-    std::fputs(report_markdown(report).c_str(), stdout);
-    std::printf(
-        "\nIn %s: trajectory.txt planes.json planes.ply planes.obj planes.mtl planes.glb "
-        "floor_plan.geojson plane_map.lcmlog%s map.svg overhead.svg report.json report.md\n",
-        options.output.c_str(), pipeline.octomap() != nullptr ? " octomap.bt" : "");
-    if (pipeline.estimates().empty())
-        throw std::runtime_error(options.input + ": no frame of it could be used");
-    if (report.at("tracked") == 0) {
-        throw std::runtime_error(
-            options.input + ": none of its " + std::to_string(input->frames()) +
-            " frames could be tracked: no depth (all zero, or out of range) or nothing to follow in them");
+    const Outputs outputs = write_outputs(folder, options.input, *input, pipeline, clock);
+    warn(folder.take_notes());
+    std::vector<std::string> problems = problems_of(options.input, *input, pipeline, folder, outputs);
+    if (!error.empty()) problems.push_back(error + "; what was mapped until then is kept");
+    try {
+        print_report(outputs);
+    } catch (const std::exception& failure) {
+        problems.emplace_back(failure.what());
     }
-    return 0;
+    for (const std::string& problem : problems) std::fprintf(stderr, "planemap-run: %s\n", problem.c_str());
+    return problems.empty() ? 0 : 1;
 }
 
 }  // namespace

@@ -43,8 +43,9 @@ Json stage(const Histogram& ms) {
     return {{"median", ms.median()}, {"p95", ms.p95()}, {"count", ms.count()}, {"total_s", ms.sum() / 1000}};
 }
 
-Json stages(Pipeline& pipeline) {
+Json stages(const Input& input, Pipeline& pipeline) {
     return {
+        {"input", stage(input.read_ms())},
         {"decode", stage(pipeline.decoder().decode_ms())},
         {"segmentation", stage(pipeline.segmentation().status().work_ms())},
         {"odometry", stage(pipeline.odometry().status().work_ms())},
@@ -110,26 +111,28 @@ void RunClock::stop() {
     cpu_s_ = cpu_seconds() - cpu_start_;
 }
 
-Json write_outputs(const std::filesystem::path& folder, const std::string& input_name, const Input& input,
-                   Pipeline& pipeline, const RunClock& clock) {
+std::int64_t tracked_frames(const Pipeline& pipeline) {
+    const auto& estimates = pipeline.estimates();
+    return std::count_if(estimates.begin(), estimates.end(),
+                         [](const auto& e) { return e.status != TrackingStatus::kLost; });
+}
+
+std::vector<Result> essential_results(Pipeline& pipeline) {
+    const PlaneMapper& mapper = pipeline.map().mapper();
+    return {
+        {"plane_map.lcmlog", [&mapper](const auto& file) { write_plane_map(file, mapper.map()); }},
+        {"trajectory.txt", [&pipeline](const auto& file) { write_trajectory(file, pipeline.trajectory()); }},
+        {"planes.json",
+         [&mapper](const auto& file) { write_file(file, planes_json(mapper.map(), mapper.sightings())); }}};
+}
+
+namespace {
+
+Json report_of(const std::string& input_name, const Input& input, Pipeline& pipeline, const RunClock& clock) {
     const PlaneMap& map = pipeline.map().mapper().map();
     const Trajectory trajectory = pipeline.trajectory();
-    write_trajectory(folder / "trajectory.txt", trajectory);
-    write_file(folder / "planes.json", planes_json(map, pipeline.map().mapper().sightings()));
-    write_file(folder / "planes.ply", planes_ply(map, trajectory));
-    write_file(folder / "planes.obj", planes_obj(map, trajectory));
-    write_file(folder / "planes.mtl", planes_mtl(map));
-    write_file(folder / "planes.glb", planes_glb(map, trajectory));
-    write_file(folder / "floor_plan.geojson", floor_plan_geojson(map, trajectory));
-    write_plane_map(folder / "plane_map.lcmlog", map);
-    write_file(folder / "overhead.svg", overhead_svg(map, trajectory));
-    write_file(folder / "map.svg", perspective_svg(map, trajectory));
-    if (pipeline.octomap() != nullptr) write_file(folder / "octomap.bt", pipeline.octomap()->builder().bt());
-    input.write_truth(folder);
-
     const auto& estimates = pipeline.estimates();
-    const auto tracked = std::count_if(estimates.begin(), estimates.end(),
-                                       [](const auto& e) { return e.status != TrackingStatus::kLost; });
+    const std::int64_t tracked = tracked_frames(pipeline);
     const KeyframeTrajectory& keyframes = pipeline.keyframes();
     Json report;
     report["input"] = input_name;
@@ -143,15 +146,114 @@ Json write_outputs(const std::filesystem::path& folder, const std::string& input
     report["wall_s"] = clock.wall_s();
     report["cpu_s"] = clock.cpu_s();
     report["peak_rss_mb"] = peak_rss_mb();
-    report["stages_ms"] = stages(pipeline);
+    report["stages_ms"] = stages(input, pipeline);
     const double octomap_s = report["stages_ms"]["octomap"]["total_s"].get<double>();
     report["frames_per_s_without_octomap"] =
         static_cast<double>(input.frames()) / std::max(clock.wall_s() - octomap_s, 1e-9);
     add_sizes(pipeline, input.frames(), report);
     if (const auto truth = input.truth()) add_accuracy(*truth, trajectory, report);
-    write_file(folder / "report.md", report_markdown(report));
-    write_file(folder / "report.json", report.dump(2) + "\n");
     return report;
+}
+
+/// What can be had from the essential results, or is less than them: the small first, the largest last.
+std::vector<Result> further_results(const Input& input, Pipeline& pipeline, const Json& report) {
+    const PlaneMap& map = pipeline.map().mapper().map();
+    std::vector<Result> results;
+    const auto add = [&](const char* name, std::function<std::string()> bytes) {
+        results.push_back({name, [=](const auto& file) { write_file(file, bytes()); }});
+    };
+    if (!report.is_null()) {
+        add("report.json", [&report] { return report.dump(2) + "\n"; });
+        add("report.md", [&report] { return report_markdown(report); });
+    }
+    for (Result& truth : input.truth_results()) results.push_back(std::move(truth));
+    add("planes.ply", [&map, &pipeline] { return planes_ply(map, pipeline.trajectory()); });
+    add("planes.obj", [&map, &pipeline] { return planes_obj(map, pipeline.trajectory()); });
+    add("planes.mtl", [&map] { return planes_mtl(map); });
+    add("planes.glb", [&map, &pipeline] { return planes_glb(map, pipeline.trajectory()); });
+    add("floor_plan.geojson", [&map, &pipeline] { return floor_plan_geojson(map, pipeline.trajectory()); });
+    add("overhead.svg", [&map, &pipeline] { return overhead_svg(map, pipeline.trajectory()); });
+    add("map.svg", [&map, &pipeline] { return perspective_svg(map, pipeline.trajectory()); });
+    if (pipeline.octomap() != nullptr)
+        add("octomap.bt", [&pipeline] { return pipeline.octomap()->builder().bt(); });
+    return results;
+}
+
+/// True if an earlier run left a map that is worth more than one without planes. A file that cannot be read
+/// as a map is kept, too: what it holds is not known.
+bool holds_planes(const std::filesystem::path& folder) {
+    const std::filesystem::path file = folder / "plane_map.lcmlog";
+    std::error_code ignored;
+    if (!std::filesystem::exists(file, ignored)) return false;
+    try {
+        return !read_plane_map(file).planes.empty();
+    } catch (const std::exception&) {
+        return true;
+    }
+}
+
+}  // namespace
+
+std::vector<std::string> result_names(const std::filesystem::path& folder, const Input& input) {
+    std::vector<std::string> names{"plane_map.lcmlog", "trajectory.txt",     "planes.json",  "report.json",
+                                   "report.md",        "planes.ply",         "planes.obj",   "planes.mtl",
+                                   "planes.glb",       "floor_plan.geojson", "overhead.svg", "map.svg",
+                                   "octomap.bt"};
+    const std::vector<std::string> truth{"groundtruth.txt", "planes_truth.json"};
+    std::error_code ignored;
+    bool simulated_before = false;
+    try {
+        const Json report = Json::parse(read_file(folder / "report.json"));
+        simulated_before = report.at("input").get<std::string>().starts_with("sim:");
+    } catch (const std::exception&) {
+        // No earlier run, or none that can be read: then nothing there is known to be its truth.
+    }
+    if (simulated_before) {
+        names.insert(names.end(), truth.begin(), truth.end());
+        return names;
+    }
+    for (const Result& result : input.truth_results()) {
+        if (std::filesystem::exists(folder / result.name, ignored)) {
+            throw std::runtime_error((folder / result.name).string() +
+                                     ": is there, and not of an earlier run on the simulator: give another "
+                                     "--output");
+        }
+        names.push_back(result.name);
+    }
+    return names;
+}
+
+Outputs write_outputs(ResultFolder& folder, const std::string& input_name, const Input& input,
+                      Pipeline& pipeline, const RunClock& clock) {
+    Outputs outputs;
+    const auto attempt = [&](const std::function<void()>& action) {
+        try {
+            action();
+            return true;
+        } catch (const std::exception& error) {
+            outputs.failures.emplace_back(error.what());
+            return false;
+        }
+    };
+    const auto make = [&](const std::vector<Result>& results) {
+        for (const Result& result : results)
+            if (attempt([&] { folder.make(result); })) outputs.files.push_back(result.name);
+    };
+    make(essential_results(pipeline));  // before the report, which takes a while
+    attempt([&] { outputs.report = report_of(input_name, input, pipeline, clock); });
+    make(further_results(input, pipeline, outputs.report));
+
+    const bool whole = outputs.failures.empty();
+    const bool poorer = pipeline.map().mapper().map().planes.empty() && holds_planes(folder.path());
+    if (poorer && tracked_frames(pipeline) == 0) {
+        attempt([&] { folder.discard(); });
+    } else if (poorer || (!whole && folder.holds_earlier())) {
+        attempt([&] { outputs.folder = folder.set_aside(); });
+    } else if (attempt([&] { folder.replace(); })) {
+        outputs.folder = folder.path();
+    }
+    outputs.kept_earlier = outputs.folder != folder.path() && folder.holds_earlier();
+    return outputs;
 }
 
 }  // namespace planemap

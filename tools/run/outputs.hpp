@@ -3,8 +3,11 @@
 
 #include <chrono>
 #include <filesystem>
-#include <nlohmann/json_fwd.hpp>
+#include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
+
+#include "results/result_folder.hpp"
 
 namespace planemap {
 
@@ -24,9 +27,31 @@ class RunClock {
     double cpu_start_ = 0, wall_s_ = 0, cpu_s_ = 0;
 };
 
-/// Writes all results of a run into the folder, each beside and renamed, report.json last, and returns the
-/// report. Throws std::runtime_error naming the file that could not be written.
-nlohmann::ordered_json write_outputs(const std::filesystem::path& folder, const std::string& input_name,
-                                     const Input& input, Pipeline& pipeline, const RunClock& clock);
+/// Frames whose pose is known.
+std::int64_t tracked_frames(const Pipeline& pipeline);
+
+/// What nobody wants to lose, small: plane_map.lcmlog, trajectory.txt, planes.json.
+std::vector<Result> essential_results(Pipeline& pipeline);
+
+/// The names in the folder that are planemap-run's own, to be replaced or removed. The truth's files have
+/// names that recordings use, too: they are ours only if the earlier run there was on the simulator. Throws
+/// std::runtime_error naming the file if this run would write over one that is not.
+std::vector<std::string> result_names(const std::filesystem::path& folder, const Input& input);
+
+/// What became of a run's results.
+struct Outputs {
+    nlohmann::ordered_json report;      ///< null if it could not be made
+    std::vector<std::string> files;     ///< names of those that were made
+    std::vector<std::string> failures;  ///< a line for each that was not
+    std::filesystem::path folder;       ///< where they are; empty: nowhere
+    bool kept_earlier = false;          ///< they did not replace those of an earlier run
+};
+
+/// Makes all results of a run; a failure is noted, and the others are still made. They replace those of an
+/// earlier run if they are whole and not poorer: a map without planes does not replace one with planes.
+/// Else they are set aside in a folder of their own, or, if no frame was tracked, dropped. Without an earlier
+/// run they are put in place, whole or not.
+Outputs write_outputs(ResultFolder& folder, const std::string& input_name, const Input& input,
+                      Pipeline& pipeline, const RunClock& clock);
 
 }  // namespace planemap

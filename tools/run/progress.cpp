@@ -3,13 +3,35 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <optional>
 #include <string>
 
 #include "run/input.hpp"
 #include "run/pipeline.hpp"
 
 namespace planemap {
+
+namespace {
+
+/// ", 1 min 20 s left", going by the pace so far; empty where that is not known.
+std::string time_left(std::optional<double> share, double elapsed_s) {
+    if (!share || !(*share > 0)) return {};
+    const double left_s = elapsed_s * std::max(1 / *share - 1, 0.0);
+    char text[48];
+    if (left_s < 60) {
+        std::snprintf(text, sizeof(text), ", %.0f s left", left_s);
+    } else if (left_s < 3600) {
+        std::snprintf(text, sizeof(text), ", %d min %02d s left", static_cast<int>(left_s) / 60,
+                      static_cast<int>(left_s) % 60);
+    } else {
+        std::snprintf(text, sizeof(text), ", %.1f h left", left_s / 3600);
+    }
+    return text;
+}
+
+}  // namespace
 
 Progress::Progress(bool quiet)
     : quiet_(quiet),
@@ -27,8 +49,9 @@ void Progress::show(const Input& input, Pipeline& pipeline) {
     const bool lost = latest == nullptr || latest->status == TrackingStatus::kLost;
     const std::string share =
         input.progress() ? std::to_string(static_cast<int>(100 * *input.progress())) + " %, " : "";
-    std::fprintf(stderr, "%sframe %lld, %s%.0f frames/s, %zu planes, %zu keyframes, %s%s",
+    std::fprintf(stderr, "%sframe %lld, %s%.0f frames/s%s, %zu planes, %zu keyframes, %s%s",
                  terminal_ ? "\r\033[K" : "", static_cast<long long>(input.frames()), share.c_str(), rate,
+                 time_left(input.progress(), std::chrono::duration<double>(now - start_).count()).c_str(),
                  pipeline.map().mapper().map().planes.size(), pipeline.keyframes().keyframes.size(),
                  lost ? "lost" : "tracked", terminal_ ? "" : "\n");
     std::fflush(stderr);

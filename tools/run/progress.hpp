@@ -9,8 +9,8 @@ namespace planemap {
 class Input;
 class Pipeline;
 
-/// A line on stderr while the work goes on: frame, rate, planes, tracking state. On a terminal it is redrawn
-/// in place; elsewhere one line every few seconds.
+/// A line on stderr while the work goes on: frame, rate, time left, planes, tracking state. On a terminal it
+/// is redrawn in place; elsewhere one line every few seconds.
 class Progress {
   public:
     explicit Progress(bool quiet);

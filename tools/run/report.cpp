@@ -68,7 +68,8 @@ void add_times(const Json& report, std::string& out) {
     out += "\n## Time\n\n| stage | median ms | p95 ms | times |\n| --- | ---: | ---: | ---: |\n";
     for (const auto& [stage, figures] : report.at("stages_ms").items()) {
         const double count = figures.at("count").get<double>();
-        out += "| " + stage + " | ";
+        const bool simulated = stage == "input" && report.at("input").get<std::string>().starts_with("sim:");
+        out += "| " + (simulated ? "input: the simulator" : stage) + " | ";
         out += count > 0 ? format("%.2f", figures.at("median").get<double>()) + " | " +
                                format("%.2f", figures.at("p95").get<double>())
                          : std::string("- | -");

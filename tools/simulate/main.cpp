@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // planemap-simulate: the simulator to an LCM log, with exact poses and planes beside it.
+#include <spdlog/spdlog.h>
+
 #include <cstdio>
 #include <filesystem>
+#include <stdexcept>
 
 #include "messages/process.hpp"
+#include "results/result_folder.hpp"
+#include "results/standard_output.hpp"
 #include "sensor/sensor_shell.hpp"
 #include "sensor/simulator/simulated_source.hpp"
 #include "simulate/recording.hpp"
@@ -11,27 +16,80 @@
 namespace planemap {
 namespace {
 
+constexpr const char* kTruth = "groundtruth.txt";
+constexpr const char* kPlanes = "planes_truth.json";
+
+/// The truth's names are those of recordings, too: what another simulation left may be replaced, a
+/// recording's own truth may not.
+void refuse_foreign_truth(const std::filesystem::path& folder) {
+    std::error_code ignored;
+    const std::filesystem::path truth = folder / kTruth;
+    if (std::filesystem::exists(truth, ignored) && !std::filesystem::exists(folder / kPlanes, ignored)) {
+        throw std::runtime_error(truth.string() + ": is there, and not of the simulator (there is no " +
+                                 kPlanes + "): give --output in another folder");
+    }
+}
+
+/// The name of the log in its folder.
+std::string log_name(const std::filesystem::path& output) {
+    std::error_code ignored;
+    if (!output.filename().empty() && !std::filesystem::is_directory(output, ignored))
+        return output.filename().string();
+    throw std::runtime_error(output.string() + ": is a folder; --output is the log to write, e.g. " +
+                             (output / "office.lcmlog").string());
+}
+
+struct Simulated {
+    std::int64_t frames = 0, bytes = 0;
+    std::size_t total = 0;
+};
+
+/// Makes log and truth in the folder's workspace, the truth first: it is there at once.
+Simulated make_results(const std::string& world, const SensorShellOptions& options, const std::string& log,
+                       ResultFolder& results) {
+    auto source = std::make_unique<sim::SimulatedSource>(sim::parse_simulator_name(world));
+    Simulated simulated;
+    simulated.total = source->size().value_or(0);
+    results.make({kTruth, [&](const auto& file) { write_trajectory(file, source->ground_truth()); }});
+    results.make({kPlanes, [&](const auto& file) { sim::write_planes_truth(file, source->world()); }});
+    Bus bus("memq://");
+    SensorShell sensor(bus, std::move(source), options);
+    const auto show = [&](std::int64_t frames) {
+        if (frames % 100 != 0) return;
+        std::fprintf(stderr, "planemap-simulate: frame %lld of %zu\n", static_cast<long long>(frames),
+                     simulated.total);
+    };
+    results.make({log, [&](const auto& file) { simulated.bytes = record(sensor, bus, 0, file, show); }});
+    simulated.frames = sensor.frames();
+    if (simulated.frames == 0) throw std::runtime_error(log + ": stopped before the first frame");
+    return simulated;
+}
+
 int simulate(const std::string& world, const std::filesystem::path& output,
              const SensorShellOptions& options) {
     catch_stop_signals();
-    auto source = std::make_unique<sim::SimulatedSource>(sim::parse_simulator_name(world));
-    const sim::SimulatedSource& simulated = *source;
+    sim::parse_simulator_name(world);  // a wrong name is seen before anything is touched
+    const std::string log = log_name(output);
     const std::filesystem::path folder = output.parent_path().empty() ? "." : output.parent_path();
-    std::filesystem::create_directories(folder);
-    Bus bus("memq://");
-    SensorShell sensor(bus, std::move(source), options);
-    const std::size_t total = sensor.source().size().value_or(0);
-    const std::int64_t bytes = record(sensor, bus, 0, output, [&](std::int64_t frames) {
-        if (frames % 100 == 0) {
-            std::fprintf(stderr, "planemap-simulate: frame %lld of %zu\n", static_cast<long long>(frames),
-                         total);
-        }
-    });
-    write_trajectory(folder / "groundtruth.txt", simulated.ground_truth());
-    sim::write_planes_truth(folder / "planes_truth.json", simulated.world());
-    std::printf("%s: %lld frames, %.1f MB; exact poses in %s, planes in %s\n", output.c_str(),
-                static_cast<long long>(sensor.frames()), static_cast<double>(bytes) / 1e6,
-                (folder / "groundtruth.txt").c_str(), (folder / "planes_truth.json").c_str());
+    refuse_foreign_truth(folder);
+    // What a run that did not end left can be made again, and is large.
+    ResultFolder results(folder, {log, kTruth, kPlanes}, "." + log + ".part",
+                         ResultFolder::Leftovers::kRemove);
+    Simulated simulated;
+    try {
+        simulated = make_results(world, options, log, results);
+        results.replace();
+    } catch (...) {
+        results.discard();
+        throw;
+    }
+    for (const std::string& note : results.take_notes()) spdlog::warn("{}", note);
+    if (stop_requested()) spdlog::warn("stopped after {} of {} frames", simulated.frames, simulated.total);
+    char text[64];
+    std::snprintf(text, sizeof(text), "%lld frames, %.1f MB", static_cast<long long>(simulated.frames),
+                  static_cast<double>(simulated.bytes) / 1e6);
+    print((results.path() / log).string() + ": " + text + "; exact poses in " +
+          (results.path() / kTruth).string() + ", planes in " + (results.path() / kPlanes).string() + "\n");
     return 0;
 }
 

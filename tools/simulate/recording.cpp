@@ -1,30 +1,66 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simulate/recording.hpp"
 
+#include <exception>
+
 #include "messages/log.hpp"
 
 namespace planemap {
 
+namespace {
+
+/// Writes what a bus delivers. An error stays here until it is asked for: thrown in a handler, the bus would
+/// count it as one bad message.
+class Recorder {
+  public:
+    Recorder(const SensorShell& sensor, Bus& bus, const std::filesystem::path& log)
+        : sensor_(sensor), writer_(log) {
+        bus.subscribe(".*", [this](const RawMessage& message) { write(message); });
+    }
+    std::int64_t bytes() const { return bytes_; }
+    void throw_if_failed() const {
+        if (error_) std::rethrow_exception(error_);
+    }
+    void close() { writer_.close(); }
+
+  private:
+    void write(const RawMessage& message) {
+        if (error_) return;
+        try {
+            writer_.write({events_++,
+                           sensor_.last_utime(),
+                           std::string(message.channel),
+                           {message.bytes.begin(), message.bytes.end()}});
+            bytes_ += static_cast<std::int64_t>(message.bytes.size());
+        } catch (...) {
+            error_ = std::current_exception();
+        }
+    }
+
+    const SensorShell& sensor_;
+    LogWriter writer_;
+    std::int64_t events_ = 0, bytes_ = 0;
+    std::exception_ptr error_;
+};
+
+}  // namespace
+
 std::int64_t record(SensorShell& sensor, Bus& bus, std::int64_t max_frames, const std::filesystem::path& log,
                     const std::function<void(std::int64_t frames)>& on_frame) {
-    const std::filesystem::path beside = log.string() + ".part";
-    LogWriter writer(beside);
-    std::int64_t events = 0, bytes = 0;
-    bus.subscribe(".*", [&](const RawMessage& message) {
-        LogEvent event{events++,
-                       sensor.last_utime(),
-                       std::string(message.channel),
-                       {message.bytes.begin(), message.bytes.end()}};
-        bytes += static_cast<std::int64_t>(event.bytes.size());
-        writer.write(event);
-    });
-    while (!stop_requested() && (max_frames == 0 || sensor.frames() < max_frames) && sensor.poll() >= 0) {
-        bus.drain();
-        on_frame(sensor.frames());
+    Recorder recorder(sensor, bus, log);
+    try {
+        while (!stop_requested() && (max_frames == 0 || sensor.frames() < max_frames) && sensor.poll() >= 0) {
+            bus.drain();
+            recorder.throw_if_failed();
+            on_frame(sensor.frames());
+        }
+        recorder.close();
+    } catch (...) {
+        std::error_code ignored;
+        std::filesystem::remove(log, ignored);
+        throw;
     }
-    writer.close();
-    std::filesystem::rename(beside, log);
-    return bytes;
+    return recorder.bytes();
 }
 
 }  // namespace planemap

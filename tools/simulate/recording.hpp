@@ -10,9 +10,10 @@
 namespace planemap {
 
 /// Writes at most `max_frames` frames of a sensor on a memq:// bus (0: all there are) to an LCM log, as they
-/// would be published. The log is written beside and renamed: one that bears its name is whole. Calls
-/// `on_frame` with the frames so far after each, and ends early where stop_requested(). Returns the bytes of
-/// the messages. Throws std::runtime_error naming the file.
+/// would be published. Calls `on_frame` with the frames so far after each, and ends early where
+/// stop_requested(). Returns the bytes of the messages. Throws std::runtime_error naming the file when it
+/// cannot be written; what was written until then is removed. Who must not see half a log gives a name of a
+/// workspace, and renames.
 std::int64_t record(SensorShell& sensor, Bus& bus, std::int64_t max_frames, const std::filesystem::path& log,
                     const std::function<void(std::int64_t frames)>& on_frame);
 

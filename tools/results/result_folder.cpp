@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "results/result_folder.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <ctime>
+#include <regex>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+
+#include "core/files.hpp"
+
+namespace planemap {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kKeptAside = 5;
+constexpr std::size_t kTriedBytes = 1 << 16;
+constexpr const char* kStale = ".stale-";  ///< marks a name whose earlier result goes
+
+[[noreturn]] void fail(const fs::path& path, const std::string& what, const std::string& reason) {
+    throw std::runtime_error(path.string() + ": " + what + ": " + reason);
+}
+
+[[noreturn]] void fail(const fs::path& path, const std::string& what, int error) {
+    fail(path, what, std::strerror(error));
+}
+
+bool is_there(const fs::path& path) {
+    std::error_code error;
+    return fs::exists(fs::symlink_status(path, error));
+}
+
+void rename_or_throw(const fs::path& from, const fs::path& to) {
+    std::error_code error;
+    fs::rename(from, to, error);
+    if (error) fail(to, "cannot be put in place", error.message());
+}
+
+void remove_or_throw(const fs::path& path) {
+    std::error_code error;
+    fs::remove_all(path, error);
+    if (error) fail(path, "cannot be removed", error.message());
+}
+
+/// Waits until the folder's entries are on the disk. Where that cannot be had, nothing is lost by it.
+void sync_folder(const fs::path& folder) {
+    const int handle = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (handle < 0) return;
+    ::fsync(handle);
+    ::close(handle);
+}
+
+std::vector<fs::path> entries_of(const fs::path& folder) {
+    std::error_code error;
+    std::vector<fs::path> entries;
+    for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
+        entries.push_back(at->path());
+    if (error) fail(folder, "cannot be read", error.message());
+    std::sort(entries.begin(), entries.end());
+    return entries;
+}
+
+/// What is no result: trials, marks, and what a kill leaves of write_file().
+bool is_scrap(const fs::path& file) {
+    static const std::regex kScrap(R"(\..*|.*\.tmp\d+)");
+    return std::regex_match(file.filename().string(), kScrap);
+}
+
+/// When something in the folder was last written: 20261128-180501, UTC.
+std::string date_of(const fs::path& folder) {
+    std::time_t newest = 0;
+    struct stat status = {};
+    if (::stat(folder.c_str(), &status) == 0) newest = status.st_mtime;
+    for (const fs::path& entry : entries_of(folder))
+        if (::stat(entry.c_str(), &status) == 0) newest = std::max(newest, status.st_mtime);
+    std::tm utc = {};
+    ::gmtime_r(&newest, &utc);
+    char text[32];
+    std::strftime(text, sizeof(text), "%Y%m%d-%H%M%S", &utc);
+    return text;
+}
+
+}  // namespace
+
+ResultFolder::ResultFolder(fs::path folder, std::vector<std::string> names, std::string workspace_name,
+                           Leftovers leftovers)
+    : folder_(std::move(folder)), names_(std::move(names)), workspace_(std::move(workspace_name)) {
+    // A limit on the size of files (ulimit -f) is then an error of the write, not the end of the process.
+    std::signal(SIGXFSZ, SIG_IGN);
+    for (const std::string& name : names_) {
+        std::error_code error;
+        if (fs::is_directory(folder_ / name, error))
+            throw std::runtime_error((folder_ / name).string() + ": is a folder, where a result is to go");
+    }
+    if (!lock()) {
+        throw std::runtime_error(folder_.string() +
+                                 ": another run is writing its results there (its lock is " +
+                                 lock_file().filename().string() + "): wait for it, or give another folder");
+    }
+    try {
+        restore();
+        remove_scraps();
+        if (leftovers == Leftovers::kRemove && holds_made()) {
+            remove_or_throw(workspace());
+            notes_.push_back(workspace().string() + ": left by a run that did not end; removed");
+        } else if (holds_made()) {
+            const fs::path kept = set_aside();
+            notes_.push_back("an earlier run that did not end left what it had so far: kept as " +
+                             kept.string());
+        }
+        try_room();
+    } catch (...) {
+        unlock();
+        throw;
+    }
+}
+
+ResultFolder::~ResultFolder() {
+    std::error_code ignored;
+    if (is_locked()) fs::remove(workspace(), ignored);  // succeeds only if it is empty
+    unlock();
+}
+
+std::vector<std::string> ResultFolder::take_notes() {
+    return std::exchange(notes_, {});
+}
+
+/// True when the lock is ours and lies in the folder that bears the name now.
+bool ResultFolder::is_locked() const {
+    struct stat ours = {}, there = {};
+    return lock_ >= 0 && ::fstat(lock_, &ours) == 0 && ::stat(lock_file().c_str(), &there) == 0 &&
+           ours.st_ino == there.st_ino && ours.st_dev == there.st_dev;
+}
+
+/// Makes the folder and takes its lock; false if another process holds it.
+bool ResultFolder::lock() {
+    while (true) {
+        std::error_code error;
+        fs::create_directories(folder_, error);
+        if (error) fail(folder_, "cannot be made", error.message());
+        if (!fs::is_directory(folder_, error))
+            throw std::runtime_error(folder_.string() + ": is no folder that can be written to");
+        lock_ = ::open(lock_file().c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+        if (lock_ < 0) fail(folder_, "is no folder that can be written to", errno);
+        if (::flock(lock_, LOCK_EX | LOCK_NB) != 0) {
+            const int reason = errno;
+            if (reason == EINTR) {
+                ::close(std::exchange(lock_, -1));
+                continue;
+            }
+            if (reason == EWOULDBLOCK) {
+                ::close(std::exchange(lock_, -1));
+                return false;
+            }
+            notes_.push_back(folder_.string() + ": cannot be locked (" + std::strerror(reason) +
+                             "): see to it that no other run writes there meanwhile");
+            return true;
+        }
+        if (is_locked()) return true;
+        ::close(std::exchange(lock_, -1));  // its last holder has just removed it
+    }
+}
+
+void ResultFolder::unlock() {
+    if (is_locked()) ::unlink(lock_file().c_str());
+    if (lock_ >= 0) ::close(std::exchange(lock_, -1));
+}
+
+/// Sees to it that the folder is there and ours. One that was removed meanwhile is made again; if another run
+/// has taken its place, the results go into a folder beside it.
+void ResultFolder::enter() {
+    if (is_locked()) return;
+    ::close(std::exchange(lock_, -1));
+    const fs::path wanted = folder_;
+    for (int i = 2; !lock(); ++i) folder_ = wanted.string() + "-" + std::to_string(i);
+    made_.clear();
+    notes_.push_back(wanted.string() + ": was removed meanwhile; " +
+                     (folder_ == wanted ? "made again" : "the results go to " + folder_.string()));
+}
+
+/// Ends what an earlier run began: its results were whole, but not all in place.
+void ResultFolder::restore() {
+    if (!is_there(moving())) return;
+    move_into_place();
+    notes_.push_back(folder_.string() +
+                     ": put the results of an earlier run in place, which was ended in doing so");
+}
+
+void ResultFolder::try_room() const {
+    std::error_code error;
+    fs::create_directory(workspace(), error);
+    if (error) fail(workspace(), "cannot be made", error.message());
+    const fs::path trial = workspace() / ".trial";
+    write_file(trial, std::string(kTriedBytes, ' '));
+    fs::remove(trial, error);
+}
+
+void ResultFolder::make(const Result& result) {
+    enter();
+    std::error_code error;
+    fs::create_directory(workspace(), error);
+    if (error) fail(workspace(), "cannot be made", error.message());
+    result.write(made(result.name));
+    if (std::find(made_.begin(), made_.end(), result.name) == made_.end()) made_.push_back(result.name);
+}
+
+bool ResultFolder::holds_made() const {
+    if (!is_there(workspace())) return false;
+    const std::vector<fs::path> entries = entries_of(workspace());
+    return !std::all_of(entries.begin(), entries.end(), is_scrap);
+}
+
+void ResultFolder::remove_scraps() const {
+    if (!is_there(workspace())) return;
+    for (const fs::path& entry : entries_of(workspace()))
+        if (is_scrap(entry)) remove_or_throw(entry);
+}
+
+bool ResultFolder::holds_earlier() const {
+    return std::any_of(names_.begin(), names_.end(),
+                       [&](const std::string& name) { return is_there(folder_ / name); });
+}
+
+void ResultFolder::replace(const std::vector<std::string>& names) {
+    for (const std::string& name : made_)
+        if (!is_there(made(name))) fail(made(name), "was made, and is gone", "the earlier results stay");
+    for (const std::string& name : names.empty() ? names_ : names) {
+        // The marks tell who goes on after a kill what else there is to do.
+        if (is_there(folder_ / name) && !is_there(made(name))) write_file(workspace() / (kStale + name), "");
+    }
+    if (!is_there(workspace())) return;  // nothing was made
+    rename_or_throw(workspace(), moving());
+    move_into_place();
+    made_.clear();
+}
+
+void ResultFolder::move_into_place() {
+    for (const fs::path& entry : entries_of(moving())) {
+        const std::string name = entry.filename().string();
+        if (name.starts_with(kStale)) {
+            remove_or_throw(folder_ / name.substr(std::strlen(kStale)));
+            remove_or_throw(entry);
+        } else {
+            rename_or_throw(entry, folder_ / name);
+        }
+    }
+    remove_or_throw(moving());
+    sync_folder(folder_);
+}
+
+fs::path ResultFolder::set_aside() {
+    const std::string stem = (workspace_.starts_with('.') ? workspace_.substr(1) : workspace_) + "-";
+    const std::string name = stem + date_of(workspace());
+    fs::path kept = folder_ / name;
+    for (int i = 2; is_there(kept); ++i) kept = folder_ / (name + "-" + std::to_string(i));
+    remove_scraps();
+    rename_or_throw(workspace(), kept);
+    made_.clear();
+    drop_oldest();
+    return kept;
+}
+
+void ResultFolder::drop_oldest() {
+    const std::string stem = (workspace_.starts_with('.') ? workspace_.substr(1) : workspace_) + "-";
+    static const std::regex kDate(R"(\d{8}-\d{6}(-\d+)?)");
+    std::vector<fs::path> aside;
+    for (const fs::path& entry : entries_of(folder_)) {
+        const std::string name = entry.filename().string();
+        if (name.starts_with(stem) && std::regex_match(name.substr(stem.size()), kDate))
+            aside.push_back(entry);
+    }
+    for (std::size_t i = 0; i + kKeptAside < aside.size(); ++i) {
+        remove_or_throw(aside[i]);
+        notes_.push_back(aside[i].string() + ": removed, the newest " + std::to_string(kKeptAside) +
+                         " of its kind are kept");
+    }
+}
+
+void ResultFolder::discard() {
+    remove_or_throw(workspace());
+    made_.clear();
+}
+
+}  // namespace planemap

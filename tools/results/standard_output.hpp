@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string_view>
+
+namespace planemap {
+
+/// Writes to standard output and sees it through. Throws std::runtime_error if it cannot be written, e.g. to
+/// a full disk.
+void print(std::string_view text);
+
+}  // namespace planemap
