@@ -23,6 +23,7 @@ find_library_target(lcm::lcm lcm/lcm-cpp.hpp lcm)
 find_library_target(turbojpeg::turbojpeg turbojpeg.h turbojpeg)
 find_library_target(libdeflate::libdeflate libdeflate.h deflate)
 find_library_target(spng::spng spng.h spng)
+find_library_target(zstd::zstd zstd.h zstd)
 
 # PCL's own config drags in VTK, Qt and MPI; the paper's RANSAC needs four of its libraries.
 find_path(PCL_INCLUDE pcl/point_types.h PATH_SUFFIXES pcl-1.13 pcl-1.14 pcl-1.15 REQUIRED)

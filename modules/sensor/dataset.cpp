@@ -131,6 +131,9 @@ Dataset::Dataset(const fs::path& folder, const SourceOptions& options)
     : folder_(folder), frames_(list_frames(folder, options)) {
     if (frames_.empty()) throw std::runtime_error(folder.string() + ": its lists name no depth images");
     camera_ = camera_of_folder(folder);
+    const auto [from, to] = frames_within(options.frames, frames_.size());
+    frames_ = {frames_.begin() + static_cast<std::ptrdiff_t>(from),
+               frames_.begin() + static_cast<std::ptrdiff_t>(to)};
 }
 
 ReadResult Dataset::next(SensorFrame& frame) {

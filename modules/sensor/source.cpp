@@ -19,7 +19,9 @@ void SourceOptions::validate() const {
 std::unique_ptr<FrameSource> open_source(const std::string& input, const SourceOptions& options) {
     options.validate();
     if (input.starts_with("sim:")) {
-        return std::make_unique<sim::SimulatedSource>(sim::parse_simulator_name(input));
+        auto source = std::make_unique<sim::SimulatedSource>(sim::parse_simulator_name(input));
+        source->select(options.frames);
+        return source;
     }
     return std::make_unique<Dataset>(input, options);
 }

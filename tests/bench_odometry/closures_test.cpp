@@ -22,20 +22,6 @@ Closure closure(const Trajectory& truth, std::size_t from, std::size_t to, doubl
     return {truth[from].utime, truth[to].utime, relative * error};
 }
 
-TEST(PoseBetween, InterpolatesAndLeavesGapsOut) {
-    Trajectory two(2);
-    two[0].utime = 100;
-    two[1].utime = 200;
-    two[1].world_from_camera.translation() = Vector3d(1, 0, 0);
-    EXPECT_NEAR(pose_between(two, 125, 100)->translation().x(), 0.25, 1e-12);
-    EXPECT_EQ(pose_between(two, 100, 0)->translation().x(), 0);
-    EXPECT_EQ(pose_between(two, 200, 0)->translation().x(), 1);
-    EXPECT_FALSE(pose_between(two, 125, 99)) << "a gap";
-    EXPECT_FALSE(pose_between(two, 99, 1000));
-    EXPECT_FALSE(pose_between(two, 201, 1000));
-    EXPECT_FALSE(pose_between({}, 0, 1000));
-}
-
 TEST(Judge, TrueWithinTenCentimetresAndFiveDegrees) {
     const Trajectory truth = circle(2);
     EXPECT_FALSE(judge(truth, closure(truth, 0, 300, 0, 0))->is_false);

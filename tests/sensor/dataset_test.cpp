@@ -75,6 +75,21 @@ TEST(Dataset, TheTimeWindowIsAnOption) {
     EXPECT_THROW(open_source(folder.path().string(), {.max_color_gap_s = -1}), std::invalid_argument);
 }
 
+TEST(Dataset, OnlyTheChosenFrames) {
+    const Folder folder;
+    SensorFrame frame;
+    Dataset second(folder.path(), {.frames = {1, {}}});
+    EXPECT_EQ(second.size(), 1u);
+    ASSERT_EQ(second.next(frame).status, Status::kFrame);
+    EXPECT_EQ(frame.utime, 2000000);
+    EXPECT_EQ(second.next(frame).status, Status::kEnd);
+    Dataset first(folder.path(), {.frames = {0, 1}});
+    ASSERT_EQ(first.next(frame).status, Status::kFrame);
+    EXPECT_EQ(frame.utime, 1000000);
+    EXPECT_EQ(first.next(frame).status, Status::kEnd);
+    EXPECT_THROW(Dataset(folder.path(), {.frames = {2, {}}}), std::invalid_argument);
+}
+
 TEST(Dataset, AssociationsMayHaveEitherOrder) {
     for (const char* line : {"1.1 rgb/1.jpg 1.0 depth/1.png\n", "1.0 depth/1.png 1.1 rgb/1.jpg\n"}) {
         const Folder folder;

@@ -23,7 +23,8 @@ Json sample() {
 
 TEST(Report, PrintsRatiosWithTheirCoverage) {
     const std::string text = report_markdown(sample());
-    EXPECT_NE(text.find("| OctoMap 5 cm, in memory | 1.0 MB | 500 |"), std::string::npos) << text;
+    EXPECT_NE(text.find("| OctoMap 5 cm, its working tree, in memory | 1.0 MB | 500 |"), std::string::npos)
+        << text;
     EXPECT_NE(text.find("| OctoMap 5 cm, .bt file | 19.0 kB | 9.50 |"), std::string::npos) << text;
     EXPECT_NE(text.find("**75.0 %**"), std::string::npos) << text;
     EXPECT_NE(text.find("**90.0 %**"), std::string::npos) << text;
@@ -37,6 +38,64 @@ TEST(Report, WhatWasNotMeasuredIsSaid) {
     const std::string text = report_markdown(report);
     EXPECT_NE(text.find("**not measured**"), std::string::npos) << text;
     EXPECT_NE(text.find(".bt file | not measured"), std::string::npos) << text;
+}
+
+TEST(Report, SaysWhatIsComparedWithWhat) {
+    Json report = sample();
+    report["sizes_bytes"]["plane_map_zstd"] = 1500;
+    report["sizes_bytes"]["plane_map_working"] = 800000;
+    report["sizes_bytes"]["octomap_working"] = 4000000;
+    report["sizes_bytes"]["octomap_bt_zstd"] = 9000;
+    report["sizes_bytes"]["octomap_bt_memory"] = 600000;
+    report["sizes_bytes"]["octomap_bt_occupied"] = 7000;
+    report["octomap"]["resolution_m"] = 0.035;
+    const std::string text = report_markdown(report);
+    for (const char* line :
+         {"| plane map, the message, zstd | 1.5 kB | 0.75 |",
+          "| plane map, to go on mapping: with keyframes' regions and rasters, in memory | 800.0 kB | 400 |",
+          "| OctoMap 3.5 cm, .bt file, zstd | 9.0 kB | 4.50 |",
+          "| OctoMap 3.5 cm, .bt file of the occupied space alone | 7.0 kB | 3.50 |",
+          "| OctoMap 3.5 cm, .bt file loaded, in memory | 600.0 kB | 300 |",
+          "| OctoMap 3.5 cm, to go on mapping: tree and keyframes' depth, in memory | 4.0 MB | 2000 |",
+          "9.50 times as a file, 6.00 times as a file, zstd, 120 times loaded in memory, 5.00 times to go on "
+          "mapping",
+          "with depth or without"})
+        EXPECT_NE(text.find(line), std::string::npos) << line << "\n" << text;
+    EXPECT_EQ(text.find("OctoMap 4 cm"), std::string::npos);
+    // No size of an OctoMap without its resolution.
+    for (auto at = text.find("| OctoMap "); at != std::string::npos; at = text.find("| OctoMap ", at + 1))
+        EXPECT_EQ(text.compare(at, 16, "| OctoMap 3.5 cm"), 0) << text.substr(at, 60);
+}
+
+TEST(Report, WithoutAnOctoMapItIsSaid) {
+    Json report = sample();
+    report["octomap"] = {{"resolution_m", nullptr}, {"nodes", nullptr}};
+    report["coverage"] = {{"leaves_explained", nullptr}, {"area_supported", nullptr}};
+    for (const char* key :
+         {"octomap_memory", "octomap_bt", "octomap_ot", "octomap_occupied_leaves", "voxel_cloud_1cm"})
+        report["sizes_bytes"][key] = nullptr;
+    const std::string text = report_markdown(report);
+    EXPECT_NE(text.find("There is no OctoMap of this run"), std::string::npos) << text;
+    EXPECT_EQ(text.find("explain **not measured**"), std::string::npos) << text;
+    EXPECT_EQ(text.find("| OctoMap"), std::string::npos) << text;
+}
+
+TEST(Report, AccuracyWithItsNotesAndWarnings) {
+    Json report = sample();
+    report["accuracy"] = {{"ate_rmse_m", 0.0123},
+                          {"rpe_frame_rmse_m", nullptr},
+                          {"rpe_frame_rmse_deg", nullptr},
+                          {"rpe_frame_why", "not measured: the truth has poses 1 s apart"}};
+    report["accuracy_note"] = "of the poses that were given";
+    report["warnings"] = {"frames are far apart"};
+    report["version"] = "1.2.3";
+    report["date"] = "2026-01-01T00:00:00Z";
+    report["seed"] = 7;
+    const std::string text = report_markdown(report);
+    for (const char* line : {"ATE 0.0123 m, RPE per frame not measured: the truth has poses 1 s apart.",
+                             "Accuracy: of the poses that were given.", "**Warning:** frames are far apart.",
+                             "planemap 1.2.3, 2026-01-01T00:00:00Z, seed 7;"})
+        EXPECT_NE(text.find(line), std::string::npos) << line << "\n" << text;
 }
 
 TEST(Report, AnEmptyMapHasNoRatio) {

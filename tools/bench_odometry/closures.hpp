@@ -29,10 +29,6 @@ struct ClosureError {
     bool is_false = false;
 };
 
-/// The pose of a trajectory at a moment, interpolated between neighbours that are at most max_gap_us apart;
-/// nothing in a wider gap or outside. The trajectory is sorted by time.
-std::optional<Pose> pose_between(const Trajectory& trajectory, std::int64_t utime, std::int64_t max_gap_us);
-
 /// Compares a closure's relative pose with the true one, see ClosureTolerance; nothing where no true pose is
 /// near one of its moments.
 std::optional<ClosureError> judge(const Trajectory& truth, const Closure& closure,

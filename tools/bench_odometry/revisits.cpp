@@ -84,11 +84,11 @@ std::optional<RevisitErrors> revisit_errors(const Trajectory& truth, const Traje
     RevisitErrors errors;
     Trajectory references, visits;
     for (const Place& place : places) {
-        const auto true_first = pose_between(truth, place.visits.front(), kMaxGap_us);
-        const auto first = pose_between(estimate, place.visits.front(), kMaxGap_us);
+        const auto true_first = pose_at(truth, place.visits.front(), kMaxGap_us);
+        const auto first = pose_at(estimate, place.visits.front(), kMaxGap_us);
         for (std::size_t i = 1; i < place.visits.size(); ++i) {
-            const auto true_later = pose_between(truth, place.visits[i], kMaxGap_us);
-            const auto later = pose_between(estimate, place.visits[i], kMaxGap_us);
+            const auto true_later = pose_at(truth, place.visits[i], kMaxGap_us);
+            const auto later = pose_at(estimate, place.visits[i], kMaxGap_us);
             if (!true_first || !true_later || !first || !later) {
                 ++errors.lost;
                 continue;

@@ -207,10 +207,15 @@ void run(const Arguments& arguments) {
 int main(int argc, char** argv) {
     const std::string program = "planemap-evaluate";
     planemap::Arguments arguments;
-    planemap::Flags flags(program,
-                          "Compares a trajectory with the truth as the TUM RGB-D benchmark does: absolute "
-                          "trajectory error (ATE) after\n"
-                          "rigid alignment, and relative pose error (RPE) per frame and per second.");
+    planemap::Flags flags(
+        program,
+        "Compares a trajectory with the truth as the TUM RGB-D benchmark does: absolute "
+        "trajectory error (ATE) after\n"
+        "rigid alignment, and relative pose error (RPE) per frame and per second. For the RPE the truth's "
+        "pose is "
+        "the nearest within 5 ms,\n"
+        "else interpolated between poses at most 0.1 s apart; where the truth is sparser, the RPE "
+        "is not measured.");
     planemap::add_flags(flags, arguments);
     const int parsed = flags.parse(argc, argv);
     if (parsed >= 0) return parsed;

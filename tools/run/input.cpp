@@ -22,8 +22,8 @@ namespace {
 /// them twice.
 class SensorInput : public Input {
   public:
-    SensorInput(const std::string& name, Bus& bus)
-        : folder_(name), shell_(bus, open_source(name), in_process()) {}
+    SensorInput(const std::string& name, Bus& bus, const FrameRange& frames)
+        : folder_(name), shell_(bus, open_source(name, {.frames = frames}), in_process()) {}
 
     std::int64_t frames() const override { return shell_.frames() + shell_.broken(); }
     std::optional<double> progress() const override {
@@ -88,7 +88,8 @@ bool describes(const LogEvent& event) {
 /// An LCM log: images_t from the first channel that has them, the camera from the first camera_info_t.
 class LogInput : public Input {
   public:
-    LogInput(const std::string& name, Bus& bus, bool has_camera) : name_(name), bus_(bus), log_(name) {
+    LogInput(const std::string& name, Bus& bus, bool has_camera, const FrameRange& range)
+        : name_(name), bus_(bus), log_(name), range_(range) {
         LogReader ahead(name);
         LogEvent event;
         bool described = false;
@@ -109,6 +110,7 @@ class LogInput : public Input {
                 name + ": no camera_info_t in this log says what its camera is; give --camera camera.json");
         }
         follow_camera_ = !has_camera;
+        if (range_.from > 0) check_range();
     }
 
     std::int64_t frames() const override { return frames_; }
@@ -131,6 +133,9 @@ class LogInput : public Input {
         LogEvent event;
         while (log_.next(event)) {
             if (event.channel == channel_) {
+                const std::size_t number = next_++;
+                if (number < range_.from) continue;
+                if (range_.to && number >= *range_.to) return false;
                 bus_.publish_bytes(channels::kFrame, event.bytes);
                 ++frames_;
                 return true;
@@ -142,9 +147,19 @@ class LogInput : public Input {
         return false;
     }
 
+    /// An error now rather than at the end of the log.
+    void check_range() const {
+        LogReader ahead(name_);
+        std::size_t count = 0;
+        for (LogEvent event; count <= range_.from && ahead.next(event);) count += event.channel == channel_;
+        frames_within(range_, count);
+    }
+
     std::string name_;
     Bus& bus_;
     LogReader log_;
+    FrameRange range_;
+    std::size_t next_ = 0;  ///< number of the next frame in the log
     std::string channel_;
     std::int64_t frames_ = 0;
     bool follow_camera_ = true;
@@ -162,12 +177,12 @@ bool Input::feed() {
     return more;
 }
 
-std::unique_ptr<Input> open_input(const std::string& name, Bus& bus,
-                                  const std::optional<CameraInfo>& camera) {
+std::unique_ptr<Input> open_input(const std::string& name, Bus& bus, const std::optional<CameraInfo>& camera,
+                                  const FrameRange& frames) {
     std::error_code ignored;
     if (std::filesystem::is_regular_file(name, ignored))
-        return std::make_unique<LogInput>(name, bus, camera.has_value());
-    return std::make_unique<SensorInput>(name, bus);
+        return std::make_unique<LogInput>(name, bus, camera.has_value(), frames);
+    return std::make_unique<SensorInput>(name, bus, frames);
 }
 
 }  // namespace planemap

@@ -13,6 +13,7 @@
 #include "core/trajectory.hpp"
 #include "messages/bus.hpp"
 #include "results/result_folder.hpp"
+#include "sensor/frame_range.hpp"
 
 namespace planemap {
 
@@ -43,8 +44,9 @@ class Input {
 };
 
 /// Opens a TUM-layout folder, an LCM log or a simulator name (sim:...). `camera` is for logs that do not
-/// describe theirs. Throws std::runtime_error or std::invalid_argument with one line that names input and
-/// reason.
-std::unique_ptr<Input> open_input(const std::string& name, Bus& bus, const std::optional<CameraInfo>& camera);
+/// describe theirs; of the frames only those of `frames` are read. Throws std::runtime_error or
+/// std::invalid_argument with one line that names input and reason.
+std::unique_ptr<Input> open_input(const std::string& name, Bus& bus, const std::optional<CameraInfo>& camera,
+                                  const FrameRange& frames = {});
 
 }  // namespace planemap

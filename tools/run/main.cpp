@@ -11,13 +11,14 @@
 #include "run/pipeline.hpp"
 #include "run/progress.hpp"
 #include "run/report.hpp"
+#include "run/run_info.hpp"
 #include "sensor/camera_file.hpp"
 
 namespace planemap {
 namespace {
 
 struct RunOptions {
-    std::string input;
+    std::string input, frames;
     std::filesystem::path output, camera, poses;
     bool no_octomap = false, quiet = false, verbose = false;
     std::optional<std::uint64_t> seed;
@@ -30,11 +31,13 @@ void add_run_flags(Flags& flags, RunOptions& options) {
         "TUM-layout folder (rgb.txt, depth.txt, camera.json), LCM log, or sim:office[?frames=N&seed=N...]");
     flags.add("o,output", options.output, "Folder for the results; made if it is not there");
     flags.required();
+    flags.add("frames", options.frames,
+              "A:B: only frames A to B-1 of the input, counted from 0; either may be left out");
     flags.add("camera", options.camera, "camera.json for a log that does not describe its camera");
-    flags.add(
-        "poses", options.poses,
-        "Trajectory (TUM format, of the colour camera) that keyframes take their poses from, instead of the "
-        "graph's; e.g. groundtruth.txt");
+    flags.add("poses", options.poses,
+              "Trajectory (TUM or EuRoC format, of the colour camera) that keyframes take their poses from, "
+              "instead of the "
+              "graph's; e.g. groundtruth.txt");
     flags.add("map", options.pipeline.map.start,
               "plane_map.lcmlog to start from: its planes keep their ids and grow on. It must be in the "
               "world frame "
@@ -115,16 +118,17 @@ void warn(const std::vector<std::string>& lines) {
     for (const std::string& line : lines) spdlog::warn("{}", line);
 }
 
-int run(RunOptions options) {
+int run(RunOptions options, const nlohmann::ordered_json& about) {
     if (options.seed) options.pipeline.segmentation.seed = options.pipeline.odometry.seed = *options.seed;
     options.pipeline.with_octomap = !options.no_octomap;
     if (!options.camera.empty()) options.pipeline.camera = read_camera_file(options.camera);
     if (!options.poses.empty()) options.pipeline.poses = read_trajectory(options.poses);
+    const FrameRange frames = options.frames.empty() ? FrameRange{} : parse_frame_range(options.frames);
     catch_stop_signals();
 
     Bus bus("memq://");
     Pipeline pipeline(bus, options.pipeline);
-    const std::unique_ptr<Input> input = open_input(options.input, bus, options.pipeline.camera);
+    const std::unique_ptr<Input> input = open_input(options.input, bus, options.pipeline.camera, frames);
     ResultFolder folder(options.output, result_names(options.output, *input));
     warn(folder.take_notes());
 
@@ -137,8 +141,9 @@ int run(RunOptions options) {
     }
     if (!input->complaints().empty()) spdlog::warn("{}", input->complaints());
 
-    const Outputs outputs = write_outputs(folder, options.input, *input, pipeline, clock);
+    const Outputs outputs = write_outputs(folder, options.input, *input, pipeline, clock, about);
     warn(folder.take_notes());
+    if (!outputs.report.is_null()) warn(outputs.report.at("warnings").get<std::vector<std::string>>());
     std::vector<std::string> problems = problems_of(options.input, *input, pipeline, folder, outputs);
     if (!error.empty()) problems.push_back(error + "; what was mapped until then is kept");
     try {
@@ -165,6 +170,7 @@ int main(int argc, char** argv) {
     planemap::add_run_flags(flags, options);
     const int parsed = flags.parse(argc, argv);
     if (parsed >= 0) return parsed;
+    const nlohmann::ordered_json about = planemap::run_info(flags);
     planemap::start_logging("planemap-run", options.verbose);
-    return planemap::run_main("planemap-run", [&] { return planemap::run(options); });
+    return planemap::run_main("planemap-run", [&] { return planemap::run(options, about); });
 }

@@ -7,22 +7,20 @@
 #include <nlohmann/json.hpp>
 
 #include "core/files.hpp"
-#include "evaluate/evaluation.hpp"
 #include "map/export.hpp"
 #include "map/map_file.hpp"
-#include "messages/convert.hpp"
-#include "run/coverage.hpp"
+#include "run/accuracy.hpp"
 #include "run/input.hpp"
 #include "run/pipeline.hpp"
 #include "run/report.hpp"
+#include "run/size_report.hpp"
+#include "run/warnings.hpp"
 
 namespace planemap {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr double kBytesPerPoint = 12;  // three floats, as the paper counts
 
 double cpu_seconds() {
     rusage usage = {};
@@ -55,53 +53,6 @@ Json stages(const Input& input, Pipeline& pipeline) {
          stage(pipeline.octomap() != nullptr ? pipeline.octomap()->status().work_ms() : Histogram())}};
 }
 
-void add_sizes(Pipeline& pipeline, std::int64_t frames, Json& report) {
-    const PlaneMap& map = pipeline.map().mapper().map();
-    Json sizes;
-    sizes["plane_map_memory"] = pipeline.map().mapper().memory_bytes();
-    sizes["plane_map_message"] = to_message(map, 0).getEncodedSize();
-    const CameraInfo* camera = pipeline.decoder().camera();
-    const double pixels = camera != nullptr ? double(camera->depth.width) * camera->depth.height : 0;
-    Json octomap = {{"resolution_m", nullptr}, {"nodes", nullptr}};
-    Json coverage = {{"leaves_explained", nullptr}, {"area_supported", nullptr}};
-    for (const char* key : {"octomap_memory", "octomap_bt", "octomap_ot", "octomap_occupied_leaves"})
-        sizes[key] = nullptr;
-    sizes["raw_cloud"] = static_cast<std::int64_t>(kBytesPerPoint * pixels * static_cast<double>(frames));
-    sizes["voxel_cloud_1cm"] = nullptr;
-    if (pipeline.octomap() != nullptr) {
-        const OctomapBuilder& builder = pipeline.octomap()->builder();
-        const OctomapSizes s = builder.sizes();
-        sizes["octomap_memory"] = s.memory_bytes;
-        sizes["octomap_bt"] = s.bt_bytes;
-        sizes["octomap_ot"] = s.ot_bytes;
-        sizes["octomap_occupied_leaves"] =
-            static_cast<std::int64_t>(kBytesPerPoint * static_cast<double>(s.occupied_leaves));
-        sizes["voxel_cloud_1cm"] =
-            static_cast<std::int64_t>(kBytesPerPoint * static_cast<double>(builder.voxel_cloud_size(0.01)));
-        const double resolution = builder.tree().getResolution();
-        octomap = {{"resolution_m", resolution},
-                   {"nodes", s.nodes},
-                   {"leaves", s.leaves},
-                   {"occupied_leaves", s.occupied_leaves},
-                   {"rebuilds", builder.rebuilds()}};
-        const Coverage c = coverage_of(map, builder.occupied_voxels(), resolution);
-        coverage = {{"leaves_explained", c.leaves_explained}, {"area_supported", c.area_supported}};
-    }
-    report["sizes_bytes"] = sizes;
-    report["octomap"] = octomap;
-    report["coverage"] = coverage;
-}
-
-void add_accuracy(const Trajectory& truth, const Trajectory& estimate, Json& report) {
-    const Evaluation evaluation = evaluate(truth, estimate, {});
-    if (!evaluation.ate || !evaluation.rpe_frame) return;
-    report["accuracy"] = {{"ate_rmse_m", evaluation.ate->metres.rmse},
-                          {"rpe_frame_rmse_m", evaluation.rpe_frame->metres.rmse},
-                          {"rpe_frame_rmse_deg", evaluation.rpe_frame->degrees.rmse},
-                          {"scale", evaluation.ate->scale},
-                          {"pairs", evaluation.pairs}};
-}
-
 }  // namespace
 
 RunClock::RunClock() : start_(std::chrono::steady_clock::now()), cpu_start_(cpu_seconds()) {}
@@ -128,9 +79,9 @@ std::vector<Result> essential_results(Pipeline& pipeline) {
 
 namespace {
 
-Json report_of(const std::string& input_name, const Input& input, Pipeline& pipeline, const RunClock& clock) {
+Json report_of(const std::string& input_name, const Input& input, Pipeline& pipeline, const RunClock& clock,
+               const Json& about) {
     const PlaneMap& map = pipeline.map().mapper().map();
-    const Trajectory trajectory = pipeline.trajectory();
     const auto& estimates = pipeline.estimates();
     const std::int64_t tracked = tracked_frames(pipeline);
     const KeyframeTrajectory& keyframes = pipeline.keyframes();
@@ -151,7 +102,9 @@ Json report_of(const std::string& input_name, const Input& input, Pipeline& pipe
     report["frames_per_s_without_octomap"] =
         static_cast<double>(input.frames()) / std::max(clock.wall_s() - octomap_s, 1e-9);
     add_sizes(pipeline, input.frames(), report);
-    if (const auto truth = input.truth()) add_accuracy(*truth, trajectory, report);
+    add_accuracy(input, pipeline, report);
+    report["warnings"] = warnings_of(estimates, pipeline.given_poses() != nullptr, report);
+    report.update(about);
     return report;
 }
 
@@ -224,7 +177,7 @@ std::vector<std::string> result_names(const std::filesystem::path& folder, const
 }
 
 Outputs write_outputs(ResultFolder& folder, const std::string& input_name, const Input& input,
-                      Pipeline& pipeline, const RunClock& clock) {
+                      Pipeline& pipeline, const RunClock& clock, const Json& about) {
     Outputs outputs;
     const auto attempt = [&](const std::function<void()>& action) {
         try {
@@ -240,7 +193,7 @@ Outputs write_outputs(ResultFolder& folder, const std::string& input_name, const
             if (attempt([&] { folder.make(result); })) outputs.files.push_back(result.name);
     };
     make(essential_results(pipeline));  // before the report, which takes a while
-    attempt([&] { outputs.report = report_of(input_name, input, pipeline, clock); });
+    attempt([&] { outputs.report = report_of(input_name, input, pipeline, clock, about); });
     make(further_results(input, pipeline, outputs.report));
 
     const bool whole = outputs.failures.empty();

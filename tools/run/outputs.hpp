@@ -47,11 +47,11 @@ struct Outputs {
     bool kept_earlier = false;          ///< they did not replace those of an earlier run
 };
 
-/// Makes all results of a run; a failure is noted, and the others are still made. They replace those of an
-/// earlier run if they are whole and not poorer: a map without planes does not replace one with planes.
-/// Else they are set aside in a folder of their own, or, if no frame was tracked, dropped. Without an earlier
-/// run they are put in place, whole or not.
+/// Makes all results of a run, its report with what `about` says of it (run_info()); a failure is noted, and
+/// the others are still made. They replace those of an earlier run if they are whole and not poorer: a map
+/// without planes does not replace one with planes. Else they are set aside in a folder of their own, or, if
+/// no frame was tracked, dropped. Without an earlier run they are put in place, whole or not.
 Outputs write_outputs(ResultFolder& folder, const std::string& input_name, const Input& input,
-                      Pipeline& pipeline, const RunClock& clock);
+                      Pipeline& pipeline, const RunClock& clock, const nlohmann::ordered_json& about);
 
 }  // namespace planemap

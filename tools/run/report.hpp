@@ -7,8 +7,8 @@
 
 namespace planemap {
 
-/// report.md from report.json: sizes and ratios with their coverage, times, tracking. A saving is never
-/// printed without its coverage; what was not measured is said not to be. Throws std::runtime_error naming
+/// report.md from report.json: tracking, accuracy, warnings, sizes (sizes_markdown()), times. What was not
+/// measured is said not to be. Throws std::runtime_error naming
 /// the key if the JSON is no planemap report.
 std::string report_markdown(const nlohmann::ordered_json& report);
 

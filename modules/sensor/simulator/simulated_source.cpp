@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <stdexcept>
+#include <tuple>
 
 #include "core/files.hpp"
 #include "core/validation.hpp"
@@ -315,6 +316,11 @@ SensorFrame SimulatedSource::frame(std::size_t i) const {
     return frame;
 }
 
+void SimulatedSource::select(const FrameRange& range) {
+    std::tie(first_, frame_count_) = frames_within(range, frame_count_);
+    next_ = first_;
+}
+
 ReadResult SimulatedSource::next(SensorFrame& out) {
     if (next_ == frame_count_) {
         out = {};
@@ -326,7 +332,8 @@ ReadResult SimulatedSource::next(SensorFrame& out) {
 
 Trajectory SimulatedSource::ground_truth() const {
     Trajectory truth;
-    for (std::size_t i = 0; i < frame_count_; ++i) truth.push_back({utime(i), world_from_color(utime(i))});
+    for (std::size_t i = first_; i < frame_count_; ++i)
+        truth.push_back({utime(i), world_from_color(utime(i))});
     return truth;
 }
 

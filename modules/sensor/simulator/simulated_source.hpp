@@ -56,10 +56,12 @@ class SimulatedSource : public FrameSource {
     explicit SimulatedSource(const SimulatorOptions& options = {});
 
     const CameraInfo& camera() const override { return camera_; }
-    std::optional<std::size_t> size() const override { return frame_count_; }
+    std::optional<std::size_t> size() const override { return frame_count_ - first_; }
     ReadResult next(SensorFrame& frame) override;
+    /// Leaves the others out; the numbers of frame() and utime() stay. Throws as frames_within().
+    void select(const FrameRange& range);
 
-    /// Frame i as sensed, in any order. Precondition: i < size().
+    /// Frame i as sensed, in any order. Precondition: there is one.
     SensorFrame frame(std::size_t i) const;
     std::int64_t utime(std::size_t i) const;        ///< of its depth, microseconds
     std::int64_t color_utime(std::size_t i) const;  ///< of its colour, microseconds
@@ -71,7 +73,7 @@ class SimulatedSource : public FrameSource {
     View depth_view(std::size_t i) const;
 
     const World& world() const { return world_; }
-    /// The colour camera's exact poses at the frames' times, in order.
+    /// The colour camera's exact poses at the times of the selected frames, in order.
     Trajectory ground_truth() const;
 
   private:
@@ -86,7 +88,7 @@ class SimulatedSource : public FrameSource {
     DepthSensorOptions depth_options_;
     GaussianTable gaussian_;
     Trajectory path_;
-    std::size_t frame_count_ = 0, next_ = 0;
+    std::size_t first_ = 0, frame_count_ = 0, next_ = 0;  ///< frame_count_: one after the last
 };
 
 /// Writes the exact planes as JSON: {"world": name, "planes": [{"id", "name", "normal": [x, y, z], "d",

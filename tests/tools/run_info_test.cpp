@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run/run_info.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/version.hpp"
+#include "messages/flags.hpp"
+
+namespace planemap {
+namespace {
+
+TEST(RunInfo, HasVersionDateSeedAndOptions) {
+    std::optional<std::uint64_t> seed;
+    std::string method = "cells", empty;
+    double length_m = 0.1;
+    bool quiet = true;
+    Flags flags("planemap-test", "A test.");
+    flags.add("seed", seed, "of all");
+    flags.add("camera", empty, "none given");
+    flags.add("q,quiet", quiet, "say nothing");
+    flags.section("Map", "map-");
+    flags.add("method", method, "which");
+    flags.add("length-m", length_m, "how long");
+    nlohmann::ordered_json info = run_info(flags);
+    EXPECT_EQ(info["version"], version());
+    EXPECT_THAT(info["date"].get<std::string>(),
+                testing::MatchesRegex("20[0-9]{2}-[0-9]{2}-[0-9]{2}T[0-9]{2}:[0-9]{2}:[0-9]{2}Z"));
+    EXPECT_TRUE(info["seed"].is_null());
+    EXPECT_EQ(info["options"].dump(),
+              R"({"seed":null,"camera":null,"quiet":true,"map-method":"cells","map-length-m":0.1})");
+    seed = 18446744073709551615u;
+    EXPECT_EQ(run_info(flags)["seed"], seed.value());
+}
+
+}  // namespace
+}  // namespace planemap

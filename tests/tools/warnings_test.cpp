@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run/warnings.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+namespace planemap {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using Json = nlohmann::ordered_json;
+
+std::vector<OdometryEstimate> estimates_at(double step_s) {
+    std::vector<OdometryEstimate> estimates(9);
+    for (std::size_t i = 0; i < estimates.size(); ++i)
+        estimates[i].utime = static_cast<std::int64_t>(1e6 * step_s * static_cast<double>(i));
+    estimates.back().utime += 60000000;  // one pause does not count
+    return estimates;
+}
+
+TEST(Warnings, FramesFarApart) {
+    EXPECT_THAT(warnings_of(estimates_at(0.67), false, Json::object()),
+                ElementsAre(HasSubstr("frames are 0.67 s apart (median)")));
+    EXPECT_THAT(warnings_of(estimates_at(0.67), true, Json::object()), IsEmpty())
+        << "nothing rests on tracking";
+    for (const double step_s : {0.033, 0.1, 0.2})
+        EXPECT_THAT(warnings_of(estimates_at(step_s), false, Json::object()), IsEmpty()) << step_s;
+    EXPECT_THAT(warnings_of({}, false, Json::object()), IsEmpty());
+}
+
+TEST(Warnings, ScaleOffTheTruth) {
+    const auto with = [](Json scale, double path_m) {
+        return warnings_of(estimates_at(0.033), false,
+                           {{"accuracy", {{"scale", scale}, {"path_length_m", path_m}}}});
+    };
+    EXPECT_THAT(with(0.958, 5), ElementsAre(HasSubstr("4.4 % too long")));
+    EXPECT_THAT(with(1.05, 5), ElementsAre(HasSubstr("4.8 % too short")));
+    EXPECT_THAT(with(1.01, 5), IsEmpty());
+    EXPECT_THAT(with(0.5, 0.1), IsEmpty()) << "a camera that stood still has no scale";
+    EXPECT_THAT(with(nullptr, 5), IsEmpty());
+}
+
+}  // namespace
+}  // namespace planemap

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run/warnings.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "run/report_text.hpp"
+
+namespace planemap {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Hands move by a tenth of the view and more in this time: features leave the search of the flow, and depth
+/// steps leave the surface that the frame is laid on.
+constexpr double kSlowStep_s = 0.2;
+constexpr double kScaleOff = 0.02;
+constexpr double kShortPath_m = 0.5;  ///< of which no scale can be told
+
+double median_step_s(const std::vector<OdometryEstimate>& estimates) {
+    std::vector<std::int64_t> steps;
+    for (std::size_t i = 1; i < estimates.size(); ++i)
+        steps.push_back(estimates[i].utime - estimates[i - 1].utime);
+    if (steps.empty()) return 0;
+    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+    std::nth_element(steps.begin(), middle, steps.end());
+    return 1e-6 * static_cast<double>(*middle);
+}
+
+}  // namespace
+
+std::vector<std::string> warnings_of(const std::vector<OdometryEstimate>& estimates, bool poses_given,
+                                     const Json& report) {
+    std::vector<std::string> warnings;
+    const double step_s = median_step_s(estimates);
+    if (step_s > kSlowStep_s && !poses_given) {
+        warnings.push_back(
+            format("frames are %.2g s apart (median)", step_s) +
+            format("; tracking is made for %g s and less: poses and scale may be off where the "
+                   "camera moved far between two",
+                   kSlowStep_s));
+    }
+    if (!report.contains("accuracy")) return warnings;
+    const Json& accuracy = report.at("accuracy");
+    const Json scale = accuracy.value("scale", Json());
+    if (!scale.is_number() || accuracy.value("path_length_m", 0.0) < kShortPath_m) return warnings;
+    const double too_long = 1 / scale.get<double>() - 1;
+    if (std::abs(scale.get<double>() - 1) > kScaleOff) {
+        warnings.push_back(format("the trajectory is %.1f %% ", 100 * std::abs(too_long)) +
+                           (too_long > 0 ? "too long" : "too short") +
+                           format(" against the truth (scale %.3f)", scale.get<double>()));
+    }
+    return warnings;
+}
+
+}  // namespace planemap
