@@ -57,7 +57,7 @@ bool is_part_of(const Trajectory& trajectory, const Trajectory& truth) {
            });
 }
 
-void add_accuracy(const Input& input, const Pipeline& pipeline, Json& report) {
+void add_accuracy(const Input& input, Pipeline& pipeline, Json& report) {
     const GivenPoses* given = pipeline.given_poses();
     std::optional<Trajectory> truth;
     try {

@@ -18,6 +18,6 @@ bool is_part_of(const Trajectory& trajectory, const Trajectory& truth);
 /// figures that the truth does not allow are null. "accuracy_note" says what to know about it, or why there
 /// is none: given poses (--poses) are not what was tracked, and if they are the truth itself, nothing is
 /// measured.
-void add_accuracy(const Input& input, const Pipeline& pipeline, nlohmann::ordered_json& report);
+void add_accuracy(const Input& input, Pipeline& pipeline, nlohmann::ordered_json& report);
 
 }  // namespace planemap
