@@ -1,61 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // planemap-run and its companions as a user runs them: whole programs, real files, real exit codes.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <cstdlib>
-#include <filesystem>
-#include <nlohmann/json.hpp>
-
-#include "core/files.hpp"
 #include "core/trajectory.hpp"
 #include "data_folder.hpp"
 #include "messages/channels.hpp"
 #include "messages/convert.hpp"
 #include "messages/decode.hpp"
 #include "messages/log.hpp"
+#include "tools/programs.hpp"
 
 namespace planemap {
 namespace {
 
 using Json = nlohmann::json;
 
-class RunTest : public testing::Test {
+class RunTest : public test::Programs {
   protected:
-    RunTest() { std::filesystem::create_directories(folder_); }
-    ~RunTest() override { std::filesystem::remove_all(folder_); }
-
-    struct Result {
-        int exit_code;
-        std::string out, err;
-    };
-    /// Runs a program of build/bin.
-    Result run(const std::string& program, const std::string& arguments) {
-        const std::string out = folder_ / "stdout", err = folder_ / "stderr";
-        const std::string command =
-            std::string(PLANEMAP_BIN) + "/" + program + " " + arguments + " >'" + out + "' 2>'" + err + "'";
-        const int status = std::system(command.c_str());
-        return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), read_file(out),
-                read_file(err)};
-    }
-    std::string path(const std::string& name) const { return (folder_ / name).string(); }
-    Json report(const std::string& output) {
-        return Json::parse(read_file(folder_ / output / "report.json"));
-    }
-
-    /// A run that must end with an error: exit code not 0, no crash, one line that names what is wrong.
-    void expect_error(const std::string& program, const std::string& arguments, const std::string& named) {
-        const Result result = run(program, arguments);
-        EXPECT_NE(result.exit_code, 0) << arguments;
-        EXPECT_LT(result.exit_code, 128) << arguments << "\n" << result.err;
-        EXPECT_NE(result.err.find(named), std::string::npos) << arguments << "\n" << result.err;
-        EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << arguments << "\n"
-                                                                             << result.err;
-    }
-
-    std::filesystem::path folder_ =
-        std::filesystem::temp_directory_path() / ("planemap_run_test_" + std::to_string(::getpid()));
+    using Result = Outcome;
 };
 
 TEST_F(RunTest, WritesEverythingAndTheSameBytesAgain) {

@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "results/result_folder.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <set>
+#include <stdexcept>
+
+#include "core/files.hpp"
+#include "core/temporary_folder.hpp"
+
+namespace planemap {
+namespace {
+
+using test::TemporaryFolder;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+const std::vector<std::string> kNames{"a", "b", "c"};
+
+Result text(const std::string& name, const std::string& bytes) {
+    return {name, [=](const auto& file) { write_file(file, bytes); }};
+}
+
+template <typename Call>
+std::string error_of(Call call) {
+    try {
+        call();
+    } catch (const std::runtime_error& error) {
+        return error.what();
+    }
+    return "";
+}
+
+/// What lies in a folder, hidden things included.
+std::set<std::string> names_in(const std::filesystem::path& folder) {
+    std::set<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+        names.insert(entry.path().filename().string());
+    return names;
+}
+
+/// Exit code of a body run in a process of its own; minus the signal that ended it.
+int in_child(const std::function<int()>& body) {
+    const pid_t child = ::fork();
+    if (child == 0) ::_exit(body());
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+}
+
+TEST(ResultFolder, ReplacesEarlierResultsTogetherAndNothingElse) {
+    const TemporaryFolder folder;
+    write_file(folder / "notes.txt", "foreign");
+    for (const std::string& name : kNames) write_file(folder / name, "old");
+    {
+        ResultFolder results(folder.path(), kNames);
+        results.make(text("a", "new"));
+        results.make(text("b", "draft"));
+        results.make(text("b", "new"));
+        for (const std::string& name : kNames) EXPECT_EQ(read_file(folder / name), "old") << "not yet";
+        EXPECT_TRUE(results.holds_earlier());
+        results.replace();
+        EXPECT_THAT(results.take_notes(), IsEmpty());
+    }
+    EXPECT_EQ(read_file(folder / "a"), "new");
+    EXPECT_EQ(read_file(folder / "b"), "new");
+    EXPECT_THAT(names_in(folder.path()), ElementsAre("a", "b", "notes.txt")) << "c is of the earlier run";
+}
+
+TEST(ResultFolder, ReplacesSomeNamesWhereOnlyTheyAreMeant) {
+    const TemporaryFolder folder;
+    for (const std::string& name : kNames) write_file(folder / name, "old");
+    ResultFolder results(folder.path(), kNames);
+    results.make(text("a", "new"));
+    results.replace({"a", "b"});
+    EXPECT_EQ(read_file(folder / "a"), "new");
+    EXPECT_FALSE(std::filesystem::exists(folder / "b"));
+    EXPECT_EQ(read_file(folder / "c"), "old");
+}
+
+TEST(ResultFolder, WhatFailsLeavesWhatWasThere) {
+    const TemporaryFolder folder;
+    write_file(folder / "a", "old");
+    ResultFolder results(folder.path(), kNames);
+    results.make(text("a", "draft"));
+    EXPECT_THAT(error_of([&] {
+                    results.make({"a", [](const auto&) { throw std::runtime_error("disk full"); }});
+                }),
+                HasSubstr("disk full"));
+    EXPECT_EQ(read_file(results.made("a")), "draft");
+    results.discard();
+    EXPECT_EQ(read_file(folder / "a"), "old");
+}
+
+TEST(ResultFolder, ResultsThatWentAwayReplaceNothing) {
+    const TemporaryFolder folder;
+    for (const std::string& name : kNames) write_file(folder / name, "old");
+    ResultFolder results(folder.path(), kNames);
+    for (const std::string& name : kNames) results.make(text(name, "new"));
+    std::filesystem::remove(results.made("b"));
+    EXPECT_THAT(error_of([&] { results.replace(); }), AllOf(HasSubstr("b"), HasSubstr("gone")));
+    for (const std::string& name : kNames) EXPECT_EQ(read_file(folder / name), "old");
+}
+
+TEST(ResultFolder, ASecondRunIsRefusedWhileTheFirstLives) {
+    const TemporaryFolder folder;
+    int ready[2];
+    ASSERT_EQ(::pipe(ready), 0);
+    const pid_t first = ::fork();
+    if (first == 0) {
+        const ResultFolder results(folder.path(), kNames);
+        (void)!::write(ready[1], "x", 1);
+        ::pause();
+        ::_exit(0);
+    }
+    char byte = 0;
+    ASSERT_EQ(::read(ready[0], &byte, 1), 1);
+    EXPECT_THAT(error_of([&] { ResultFolder(folder.path(), kNames); }),
+                AllOf(HasSubstr(folder.path().string()), HasSubstr("another run")));
+    ::kill(first, SIGKILL);
+    ::waitpid(first, nullptr, 0);
+    EXPECT_EQ(error_of([&] { ResultFolder(folder.path(), kNames); }), "") << "a kill leaves no lock behind";
+    EXPECT_THAT(names_in(folder.path()), IsEmpty());
+}
+
+TEST(ResultFolder, WhatARunLeftIsKeptAndDoesNotPileUp) {
+    const TemporaryFolder folder;
+    for (int run = 0; run < 9; ++run) {
+        EXPECT_EQ(in_child([&] {
+                      ResultFolder results(folder.path(), kNames);
+                      results.make(text("a", "run " + std::to_string(run)));
+                      ::raise(SIGKILL);
+                      return 0;
+                  }),
+                  -SIGKILL);
+    }
+    ResultFolder results(folder.path(), kNames);
+    EXPECT_THAT(results.take_notes(), testing::Contains(HasSubstr("partial-")));
+    std::set<std::string> kept;
+    for (const std::string& name : names_in(folder.path())) {
+        if (!name.starts_with("partial-")) continue;
+        EXPECT_THAT(names_in(folder / name), ElementsAre("a"));
+        kept.insert(read_file(folder / name / "a"));
+    }
+    EXPECT_EQ(kept.size(), 5u);
+    EXPECT_TRUE(kept.contains("run 8")) << "the newest";
+}
+
+TEST(ResultFolder, LeftoversThatCanBeMadeAgainAreRemoved) {
+    const TemporaryFolder folder;
+    std::filesystem::create_directories(folder / ".a.part");
+    write_file(folder / ".a.part/a", "half");
+    ResultFolder results(folder.path(), {"a"}, ".a.part", ResultFolder::Leftovers::kRemove);
+    EXPECT_THAT(results.take_notes(), ElementsAre(HasSubstr("removed")));
+    EXPECT_FALSE(results.holds_made());
+}
+
+/// Whenever a run is killed, the next one finds results that belong together.
+TEST(ResultFolder, AKillAtAnyMomentMixesNothing) {
+    const TemporaryFolder folder;
+    for (int round = 0; round < 40; ++round) {
+        const pid_t child = ::fork();
+        if (child == 0) {
+            for (int i = 0;; ++i) {
+                ResultFolder results(folder.path(), kNames);
+                // c is a result of every other run only.
+                const std::string bytes = std::to_string(round) + "." + std::to_string(i);
+                for (const char* name : {"a", "b"}) results.make(text(name, bytes));
+                if (i % 2 == 0) results.make(text("c", bytes));
+                results.replace();
+            }
+        }
+        ::usleep(static_cast<useconds_t>(2000 + 311 * round));
+        ::kill(child, SIGKILL);
+        ::waitpid(child, nullptr, 0);
+        const ResultFolder results(folder.path(), kNames);
+        if (!results.holds_earlier()) continue;
+        const std::string bytes = read_file(folder / "a");
+        EXPECT_EQ(read_file(folder / "b"), bytes);
+        const bool even = (bytes.back() - '0') % 2 == 0;
+        ASSERT_EQ(std::filesystem::exists(folder / "c"), even) << bytes;
+        if (even) {
+            EXPECT_EQ(read_file(folder / "c"), bytes);
+        }
+    }
+}
+
+TEST(ResultFolder, PutsInPlaceWhatAKillInterrupted) {
+    const TemporaryFolder folder;
+    write_file(folder / "a", "new");  // moved already
+    write_file(folder / "b", "old");
+    write_file(folder / "c", "old");
+    std::filesystem::create_directories(folder / ".partial-whole");
+    write_file(folder / ".partial-whole/b", "new");
+    write_file(folder / ".partial-whole/.stale-c", "");
+    ResultFolder results(folder.path(), kNames);
+    EXPECT_THAT(results.take_notes(), ElementsAre(HasSubstr("in place")));
+    EXPECT_EQ(read_file(folder / "b"), "new");
+    EXPECT_FALSE(std::filesystem::exists(folder / "c"));
+    EXPECT_FALSE(std::filesystem::exists(folder / ".partial-whole"));
+}
+
+TEST(ResultFolder, AFolderThatWentAwayIsMadeAgain) {
+    const TemporaryFolder parent;
+    const std::filesystem::path folder = parent / "out";
+    ResultFolder results(folder, kNames);
+    results.make(text("a", "interim"));
+    std::filesystem::remove_all(folder);
+    for (const std::string& name : kNames) results.make(text(name, "final"));
+    results.replace();
+    for (const std::string& name : kNames) EXPECT_EQ(read_file(folder / name), "final");
+    EXPECT_THAT(results.take_notes(), ElementsAre(HasSubstr("removed meanwhile")));
+}
+
+TEST(ResultFolder, AFolderThatAnotherRunTookIsLeftToIt) {
+    const TemporaryFolder parent;
+    const std::filesystem::path folder = parent / "out";
+    ResultFolder first(folder, kNames);
+    std::filesystem::remove_all(folder);
+    ResultFolder second(folder, kNames);
+    first.make(text("a", "first"));
+    second.make(text("a", "second"));
+    first.replace();
+    second.replace();
+    EXPECT_EQ(read_file(folder / "a"), "second");
+    EXPECT_EQ(first.path(), parent / "out-2");
+    EXPECT_EQ(read_file(parent / "out-2" / "a"), "first");
+}
+
+TEST(ResultFolder, WhatCanBeSeenAtTheStartIsSeenThen) {
+    const TemporaryFolder folder;
+    std::filesystem::create_directories(folder / "b");
+    EXPECT_THAT(error_of([&] { ResultFolder(folder.path(), kNames); }), HasSubstr("b: is a folder"));
+    write_file(folder / "file", "x");
+    EXPECT_THAT(error_of([&] { ResultFolder(folder / "file", kNames); }), HasSubstr("file"));
+    EXPECT_THAT(error_of([&] { ResultFolder("/proc/nowhere", kNames); }), HasSubstr("/proc/nowhere"));
+    EXPECT_EQ(read_file(folder / "file"), "x");
+    // No room: here a limit on the size of files.
+    EXPECT_EQ(in_child([&] {
+                  const rlimit limit{1000, 1000};
+                  ::setrlimit(RLIMIT_FSIZE, &limit);
+                  const std::string error = error_of([&] { ResultFolder(folder / "small", kNames); });
+                  return error.find("cannot write") != std::string::npos ? 7 : 0;
+              }),
+              7);
+    EXPECT_THAT(names_in(folder / "small"), testing::Not(testing::Contains(".partial.lock")));
+}
+
+}  // namespace
+}  // namespace planemap
