@@ -8,18 +8,15 @@
 #include <stdexcept>
 
 #include "core/files.hpp"
+#include "core/stamp.hpp"
+#include "core/text_file.hpp"
 
 namespace planemap {
 
-namespace {
-
-constexpr double kMaxSeconds = 9e12;  // microseconds fit 64 bits
-
-}  // namespace
-
 Trajectory read_trajectory(const std::filesystem::path& file) {
-    std::istringstream in(read_file(file));
+    std::istringstream in(read_text_file(file));
     Trajectory trajectory;
+    StampColumn stamps;
     std::string line;
     for (int number = 1; std::getline(in, line); ++number) {
         const auto start = line.find_first_not_of(" \t\r");
@@ -27,9 +24,11 @@ Trajectory read_trajectory(const std::filesystem::path& file) {
         std::replace(line.begin(), line.end(), ',', ' ');
         std::istringstream fields(line);
         double v[8];
+        std::string stamp;
         for (double& value : v) {
             std::string text;
             fields >> text;
+            if (stamp.empty()) stamp = text;
             char* end = nullptr;
             value = std::strtod(text.c_str(), &end);
             if (text.empty() || end != text.c_str() + text.size() || !std::isfinite(value)) {
@@ -42,11 +41,11 @@ Trajectory read_trajectory(const std::filesystem::path& file) {
             throw std::runtime_error(file.string() + ":" + std::to_string(number) +
                                      ": the quaternion is not of unit length");
         }
-        if (std::abs(v[0]) > kMaxSeconds) {
-            throw std::runtime_error(file.string() + ":" + std::to_string(number) +
-                                     ": the timestamp is beyond the range of microseconds in 64 bits");
+        try {
+            trajectory.push_back({stamps.read(stamp), make_pose({v[1], v[2], v[3]}, q)});
+        } catch (const std::runtime_error& error) {
+            throw std::runtime_error(file.string() + ":" + std::to_string(number) + ": " + error.what());
         }
-        trajectory.push_back({std::llround(v[0] * 1e6), make_pose({v[1], v[2], v[3]}, q)});
     }
     std::stable_sort(trajectory.begin(), trajectory.end(),
                      [](const auto& a, const auto& b) { return a.utime < b.utime; });
