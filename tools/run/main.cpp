@@ -65,7 +65,11 @@ void prepare_output(const std::filesystem::path& folder) {
 int run(RunOptions options) {
     if (options.seed) options.pipeline.segmentation.seed = options.pipeline.odometry.seed = *options.seed;
     options.pipeline.with_octomap = !options.no_octomap;
-    if (!options.camera.empty()) options.pipeline.camera = read_camera_file(options.camera);
+    if (!options.camera.empty()) {
+        std::vector<std::string> notes;
+        options.pipeline.camera = read_camera_file(options.camera, &notes);
+        for (const std::string& note : notes) spdlog::warn("{}", note);
+    }
     if (!options.poses.empty()) options.pipeline.poses = read_trajectory(options.poses);
     catch_stop_signals();
 
