@@ -22,7 +22,12 @@ namespace {
 
 std::string read_file(const std::filesystem::path& file, std::size_t max_bytes) {
     std::error_code error;
-    if (std::filesystem::is_directory(file, error)) fail(file, "read", EISDIR);
+    const std::filesystem::file_status status = std::filesystem::status(file, error);
+    if (std::filesystem::is_directory(status)) fail(file, "read", EISDIR);
+    // To open a pipe would wait for who writes it, perhaps for ever.
+    if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+        throw std::runtime_error(file.string() + ": cannot read: not a regular file");
+    }
     errno = 0;
     std::ifstream in(file, std::ios::binary | std::ios::ate);
     if (!in) fail(file, "open", errno != 0 ? errno : ENOENT);

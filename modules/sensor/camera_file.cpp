@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sensor/camera_file.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
+#include <cstdio>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
-#include "core/files.hpp"
+#include "core/nearest_name.hpp"
+#include "core/sensor_preset.hpp"
+#include "core/text_file.hpp"
 #include "core/validation.hpp"
+#include "sensor/json_file.hpp"
 
 namespace planemap {
 
@@ -18,8 +23,33 @@ using nlohmann::json;
 /// Text of a value for an error message, on one line and not too long.
 std::string shown(const json& value) {
     std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
-    return text.size() > 60 ? text.substr(0, 60) + "..." : text;
+    return shown_text(text, 60);
 }
+
+std::string joined(const std::vector<std::string>& names) {
+    std::string text;
+    for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+    return text;
+}
+
+/// A limit for people to read.
+std::string number_text(double value) {
+    char text[32];
+    std::snprintf(text, sizeof(text), "%.6g", value);
+    return text;
+}
+
+/// What a number may be.
+struct Bounds {
+    double low, high;
+    const char* unit = "";  ///< with its blank, e.g. " pixels"
+    const char* kind = "a number";
+
+    bool hold(double value) const { return std::isfinite(value) && value >= low && value <= high; }
+    std::string text() const {
+        return std::string(kind) + " from " + number_text(low) + " to " + number_text(high) + unit;
+    }
+};
 
 /// Reads fields of one JSON object and collects what is wrong with them.
 class Reader {
@@ -28,6 +58,23 @@ class Reader {
         : object_(object), prefix_(std::move(prefix)), errors_(errors) {}
 
     bool has(const char* key) const { return object_.contains(key); }
+
+    /// An error for each key that is none of `known`, with the nearest one that is.
+    void require_known(const std::vector<std::string>& known) const {
+        constexpr std::size_t kMostNamed = 8;
+        std::size_t unknown = 0;
+        for (const auto& [key, unused] : object_.items()) {
+            if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+            if (++unknown > kMostNamed) continue;
+            const std::string nearest = nearest_name(key, known);
+            errors_.require(false, prefix_ + key_text(key), "not a known key",
+                            nearest.empty() ? "one of " + joined(known) : nearest);
+        }
+        if (unknown > kMostNamed) {
+            errors_.require(false, prefix_ + "...",
+                            std::to_string(unknown - kMostNamed) + " more unknown keys", "left out");
+        }
+    }
 
     /// The object under `key`; an empty one, and an error if it is required, when there is none.
     Reader object(const char* key, bool required) const {
@@ -41,37 +88,34 @@ class Reader {
         return {kNone, prefix_ + key + ".", errors_};
     }
 
-    /// A finite number within [low, high]; `fallback` if it is not there and not required.
-    double number(const char* key, double low, double high, const char* allowed, bool required,
-                  double fallback = 0) const {
+    /// A number within the bounds; `fallback` if it is not there and not required.
+    double number(const char* key, const Bounds& bounds, bool required, double fallback = 0) const {
         if (!has(key)) {
-            if (required) missing(key, allowed);
+            if (required) missing(key, bounds.text());
             return fallback;
         }
         const json& value = object_[key];
-        if (value.is_number() && std::isfinite(value.get<double>()) && value.get<double>() >= low &&
-            value.get<double>() <= high) {
-            return value.get<double>();
-        }
-        wrong(key, allowed);
+        if (value.is_number() && bounds.hold(value.get<double>())) return value.get<double>();
+        wrong(key, bounds.text());
         return fallback;
     }
 
-    /// Exactly `count` finite numbers; zeros after an error.
-    std::vector<double> numbers(const char* key, std::size_t count) const {
-        const std::string allowed = std::to_string(count) + " finite numbers in a list";
+    /// Exactly `count` numbers within the bounds; nothing after an error.
+    std::optional<std::vector<double>> numbers(const char* key, std::size_t count,
+                                               const Bounds& bounds) const {
+        const std::string allowed = "a list of " + std::to_string(count) + ", each " + bounds.text();
         std::vector<double> result;
         if (!has(key)) {
             missing(key, allowed);
         } else if (const json& value = object_[key]; value.is_array() && value.size() == count) {
             for (const json& element : value) {
-                if (element.is_number() && std::isfinite(element.get<double>())) {
+                if (element.is_number() && bounds.hold(element.get<double>())) {
                     result.push_back(element.get<double>());
                 }
             }
         }
         if (has(key) && result.size() != count) wrong(key, allowed);
-        result.resize(count, 0.0);
+        if (result.size() != count) return {};
         return result;
     }
 
@@ -99,68 +143,139 @@ class Reader {
     }
 
   private:
+    /// A key in a message: as it is if it is a plain word.
+    static std::string key_text(const std::string& key) {
+        const bool plain = !key.empty() && key.size() <= 40 &&
+                           std::all_of(key.begin(), key.end(), [](char c) { return c > ' ' && c < 0x7f; });
+        return plain ? key : shown(key);
+    }
+
     const json& object_;
     std::string prefix_;
     FieldErrors& errors_;
 };
 
-constexpr double kHuge = 1e6;
+// Keys that stand for what later versions read: taken, and told that they are not used yet.
+constexpr const char *kDistortion = "distortion", *kBodyFromCamera = "body_from_camera";
 
 PinholeCamera read_pinhole(const Reader& reader) {
-    constexpr const char *kSize = "a whole number from 1 to 8192",
-                         *kFocal = "a number greater than 0, pixels", *kCentre = "a finite number, pixels";
+    reader.require_known({"width", "height", "fx", "fy", "cx", "cy", kDistortion});
+    constexpr Bounds kSize{1, 8192, "", "a whole number"};
     const auto size = [&](const char* key) {
-        const double value = reader.number(key, 1, 8192, kSize, true, 1);
-        if (value != std::floor(value)) reader.wrong(key, kSize);
+        const double value = reader.number(key, kSize, true, 640);
+        if (value != std::floor(value)) reader.wrong(key, kSize.text());
         return static_cast<int>(value);
     };
     PinholeCamera camera;
     camera.width = size("width");
     camera.height = size("height");
-    camera.fx = reader.number("fx", 1e-3, kHuge, kFocal, true, 1);
-    camera.fy = reader.number("fy", 1e-3, kHuge, kFocal, true, 1);
-    camera.cx = reader.number("cx", -kHuge, kHuge, kCentre, true);
-    camera.cy = reader.number("cy", -kHuge, kHuge, kCentre, true);
+    // From a fish's eye to a telescope; a principal point further out than the image is wide was never meant.
+    const double longer = std::max(camera.width, camera.height);
+    const Bounds focal{0.05 * longer, 50 * longer, " pixels"};
+    camera.fx = reader.number("fx", focal, true, 1);
+    camera.fy = reader.number("fy", focal, true, 1);
+    camera.cx = reader.number("cx", {-1.0 * camera.width, 2.0 * camera.width, " pixels"}, true);
+    camera.cy = reader.number("cy", {-1.0 * camera.height, 2.0 * camera.height, " pixels"}, true);
     return camera;
 }
 
 Pose read_transform(const Reader& reader) {
-    const auto r = reader.numbers("rotation_vector_rad", 3), t = reader.numbers("translation_m", 3);
+    reader.require_known({"rotation_vector_rad", "translation_m"});
+    const auto r = reader.numbers("rotation_vector_rad", 3, {-6.2832, 6.2832, " rad"});
+    const auto t = reader.numbers("translation_m", 3, {-10, 10, " m"});
+    if (!r || !t) return Pose::Identity();
     Twist twist;
-    twist << t[0], t[1], t[2], r[0], r[1], r[2];
+    twist << (*t)[0], (*t)[1], (*t)[2], (*r)[0], (*r)[1], (*r)[2];
     return pose_from_twist(twist);
+}
+
+/// What is known of the kind of sensor, which the file's own range and noise then replace.
+void read_sensor(const Reader& reader, CameraInfo& camera) {
+    if (!reader.has("sensor")) return;
+    const std::string name = reader.text("sensor", 64);
+    const SensorPreset* preset = find_sensor_preset(name);
+    if (preset == nullptr) {
+        const std::vector<std::string> names = sensor_preset_names();
+        const std::string nearest = nearest_name(name, names);
+        reader.wrong("sensor",
+                     "one of " + joined(names) + (nearest.empty() ? "" : "; the nearest is " + nearest));
+        return;
+    }
+    camera.depth_min_m = preset->depth_min_m;
+    camera.depth_max_m = preset->depth_max_m;
+    camera.noise = preset->noise;
 }
 
 void read_range(const Reader& reader, CameraInfo& camera) {
     if (!reader.has("depth_range_m")) return;
-    const auto range = reader.numbers("depth_range_m", 2);
-    if (range[0] >= 0 && range[1] > range[0]) {
-        camera.depth_min_m = range[0];
-        camera.depth_max_m = range[1];
-    } else if (range[0] != 0 || range[1] != 0) {
+    constexpr double kFarthest = 100;
+    const auto range = reader.numbers("depth_range_m", 2, {0, kFarthest, " m"});
+    if (!range) return;
+    camera.depth_min_m = range->front();
+    camera.depth_max_m = range->back();
+    if (camera.depth_max_m <= camera.depth_min_m) {
         reader.wrong("depth_range_m", "[nearest, farthest] in metres with 0 <= nearest < farthest");
     }
 }
 
 void read_noise(const Reader& reader, DepthNoise& noise) {
-    constexpr const char* kAllowed = "a number of at least 0";
-    noise.base_m = reader.number("base_m", 0, 1, kAllowed, false, noise.base_m);
-    noise.quadratic_per_m = reader.number("quadratic_per_m", 0, 1, kAllowed, false, noise.quadratic_per_m);
-    noise.offset_m = reader.number("offset_m", -100, 100, "a number", false, noise.offset_m);
+    reader.require_known({"base_m", "quadratic_per_m", "offset_m"});
+    noise.base_m = reader.number("base_m", {0, 1, " m"}, false, noise.base_m);
+    noise.quadratic_per_m = reader.number("quadratic_per_m", {0, 1, " per m"}, false, noise.quadratic_per_m);
+    noise.offset_m = reader.number("offset_m", {-10, 10, " m"}, false, noise.offset_m);
+}
+
+void read_units(const Reader& reader, CameraInfo& camera) {
+    constexpr Bounds kUnits{1, 1e6, ", e.g. 1000 or 5000"};
+    constexpr double kMostRaw = 65535;
+    camera.depth_units_per_metre = reader.number("depth_units_per_metre", kUnits, true, 1000);
+    const double farthest = kMostRaw / camera.depth_units_per_metre;
+    if (reader.has("depth_units_per_metre") && farthest <= camera.depth_min_m) {
+        reader.wrong("depth_units_per_metre", "such that 16 bits reach beyond the nearest depth, " +
+                                                  number_text(camera.depth_min_m) + " m: they end at " +
+                                                  number_text(farthest) + " m");
+    }
+}
+
+/// What stands in the file and is not used.
+std::vector<std::string> unused_keys(const Reader& reader, const CameraInfo& camera) {
+    std::vector<std::string> keys;
+    for (const char* part : {"", "depth_camera", "color_camera"}) {
+        const bool top = *part == '\0';
+        if (!top && !reader.has(part)) continue;
+        const Reader inner = top ? reader : reader.object(part, false);
+        if (inner.has(kDistortion)) keys.push_back(top ? kDistortion : std::string(part) + "." + kDistortion);
+    }
+    if (reader.has(kBodyFromCamera)) keys.push_back(kBodyFromCamera);
+    if (camera.registered && reader.has("color_from_depth")) {
+        keys.push_back("color_from_depth (registered is true)");
+    }
+    return keys;
 }
 
 CameraInfo read_camera(const Reader& reader) {
+    reader.require_known({"sensor", "serial", "depth_camera", "color_camera", "registered",
+                          "color_from_depth", "depth_units_per_metre", "depth_range_m", "noise", "poses_of",
+                          "note", kDistortion, kBodyFromCamera});
     CameraInfo camera;
     camera.serial = reader.text("serial", 64);
     camera.depth = read_pinhole(reader.object("depth_camera", true));
     camera.registered = reader.boolean("registered", !reader.has("color_from_depth"));
     const bool own_color = reader.has("color_camera") || !camera.registered;
     camera.color = own_color ? read_pinhole(reader.object("color_camera", true)) : camera.depth;
-    if (!camera.registered) camera.color_from_depth = read_transform(reader.object("color_from_depth", true));
-    camera.depth_units_per_metre = reader.number("depth_units_per_metre", 1e-3, 1e9,
-                                                 "a number greater than 0, e.g. 1000 or 5000", true, 1000);
+    if (!camera.registered || reader.has("color_from_depth")) {
+        const Pose color_from_depth = read_transform(reader.object("color_from_depth", true));
+        if (!camera.registered) camera.color_from_depth = color_from_depth;
+    }
+    read_sensor(reader, camera);
     read_range(reader, camera);
+    read_units(reader, camera);
     read_noise(reader.object("noise", false), camera.noise);
+    reader.text("note", 10000);
+    const std::string poses_of = reader.text("poses_of", 64);
+    if (reader.has("poses_of") && poses_of != "color_camera") {
+        reader.wrong("poses_of", "color_camera: groundtruth.txt holds poses of the colour camera");
+    }
     return camera;
 }
 
@@ -170,16 +285,22 @@ constexpr const char* kExample =
 
 }  // namespace
 
-CameraInfo read_camera_file(const std::filesystem::path& file) {
-    const std::string bytes = read_file(file, std::size_t{1} << 20);
-    const json document = json::parse(bytes, nullptr, false);
-    if (!document.is_object()) {
-        throw std::invalid_argument(file.string() + ": not a JSON object; a complete example: " + kExample);
+CameraInfo read_camera_file(const std::filesystem::path& file, std::vector<std::string>* notes) {
+    json document;
+    try {
+        document = read_json_object(file);
+    } catch (const std::invalid_argument& error) {
+        throw std::invalid_argument(std::string(error.what()) + "; a complete example: " + kExample);
     }
     FieldErrors errors(file.string());
-    CameraInfo camera = read_camera(Reader(document, "", errors));
+    const Reader reader(document, "", errors);
+    CameraInfo camera = read_camera(reader);
     errors.throw_if_any();
     camera.validate();
+    const std::vector<std::string> unused = unused_keys(reader, camera);
+    if (notes != nullptr && !unused.empty()) {
+        notes->push_back(file.string() + ": known, but not used: " + joined(unused));
+    }
     return camera;
 }
 
@@ -202,10 +323,10 @@ std::optional<CameraInfo> tum_camera(std::string_view folder_name) {
     return camera;
 }
 
-CameraInfo camera_of_folder(const std::filesystem::path& folder) {
+CameraInfo camera_of_folder(const std::filesystem::path& folder, std::vector<std::string>* notes) {
     const std::filesystem::path file = folder / "camera.json";
     std::error_code error;
-    if (std::filesystem::exists(file, error)) return read_camera_file(file);
+    if (std::filesystem::exists(file, error) || error) return read_camera_file(file, notes);
     std::filesystem::path named = std::filesystem::weakly_canonical(folder, error);
     if (!named.has_filename()) named = named.parent_path();
     if (auto camera = tum_camera(named.filename().string())) return *camera;

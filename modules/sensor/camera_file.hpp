@@ -3,7 +3,9 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/camera.hpp"
 
@@ -15,11 +17,16 @@ namespace planemap {
 ///    "registered": false,                  optional: true if there is no color_from_depth
 ///    "color_camera": {...},                like depth_camera, which it defaults to if registered
 ///    "color_from_depth": {"rotation_vector_rad": [0, 0, 0], "translation_m": [-0.025, 0, 0]},
+///    "sensor": "kinect1",                  optional: range and noise of that preset, see sensor_presets()
+///    "depth_range_m": [0.3, 8],            optional, instead of the preset's
 ///    "noise": {"base_m": 0.0012, "quadratic_per_m": 0.0019, "offset_m": 0.4},   optional, as each of its
-///    keys "depth_range_m": [0.3, 8],            optional "serial": "kinect"}                   optional
-/// Other keys are ignored. Throws std::runtime_error if the file cannot be read, and std::invalid_argument
-/// that names the file and every bad field at once.
-CameraInfo read_camera_file(const std::filesystem::path& file);
+///                                          keys, instead of the preset's
+///    "serial": "K1", "note": "...", "poses_of": "color_camera"}                 optional
+/// "distortion" (also within a camera) and "body_from_camera" are known, but not used yet: a note says so, as
+/// of anything else that stands there in vain. Throws std::runtime_error if the file cannot be read, and
+/// std::invalid_argument that names the file and every bad field at once: value and what is allowed; unknown
+/// keys with the nearest known one; syntax errors with line and column.
+CameraInfo read_camera_file(const std::filesystem::path& file, std::vector<std::string>* notes = nullptr);
 
 /// The published intrinsics of the TUM RGB-D benchmark's sensors (registered, 5000 units a metre) if the name
 /// of the folder holds "freiburg1", "freiburg2" or "freiburg3"; else nothing.
@@ -27,6 +34,6 @@ std::optional<CameraInfo> tum_camera(std::string_view folder_name);
 
 /// The camera of a dataset folder: its camera.json, or what tum_camera() knows. Throws as read_camera_file(),
 /// and std::runtime_error that shows what to write if there is neither.
-CameraInfo camera_of_folder(const std::filesystem::path& folder);
+CameraInfo camera_of_folder(const std::filesystem::path& folder, std::vector<std::string>* notes = nullptr);
 
 }  // namespace planemap

@@ -3,12 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <sstream>
+#include <set>
 #include <stdexcept>
-#include <tuple>
 
 #include "core/files.hpp"
+#include "core/text_file.hpp"
 #include "sensor/camera_file.hpp"
 #include "sensor/jpeg.hpp"
 #include "sensor/png.hpp"
@@ -21,116 +20,118 @@ namespace {
 
 constexpr std::size_t kMaxImageBytes = std::size_t{1} << 28;
 
-/// Seconds as text to microseconds; nothing unless the text is a finite number of a plausible size.
-std::optional<std::int64_t> parse_utime(const std::string& text) {
-    char* end = nullptr;
-    const long double seconds = std::strtold(text.c_str(), &end);
-    if (text.empty() || *end != '\0' || !std::isfinite(seconds) || std::fabs(seconds) > 1e12L) return {};
-    return std::llround(seconds * 1e6L);
+/// True for a link that leads nowhere, too: to read it says why.
+bool stands(const fs::path& path) {
+    std::error_code ignored;
+    return fs::exists(fs::symlink_status(path, ignored));
 }
 
-/// Calls use(number, fields) for each line that is not blank or a comment; a false return is a bad line.
-template <typename Use>
-void for_each_line(const fs::path& file, const char* expected, const Use& use) {
-    std::istringstream in(read_file(file));
-    std::string line;
-    for (int number = 1; std::getline(in, line); ++number) {
-        std::istringstream words(line);
-        std::vector<std::string> fields;
-        for (std::string word; words >> word;) fields.push_back(word);
-        if (fields.empty() || fields[0].starts_with('#')) continue;
-        if (!use(fields)) {
-            throw std::runtime_error(file.string() + ":" + std::to_string(number) + ": expected " + expected);
+bool holds_lists(const fs::path& folder) {
+    return stands(folder / "depth.txt") || stands(folder / "associations.txt");
+}
+
+/// A folder just below that has the lists, as archives unpack to; empty if there is none.
+fs::path folder_below(const fs::path& folder) {
+    std::set<fs::path> below;  // in order of name, whatever the file system's
+    std::error_code error;
+    for (fs::directory_iterator i(folder, error), end; !error && i != end; i.increment(error)) {
+        if (holds_lists(i->path())) below.insert(i->path());
+    }
+    return below.empty() ? fs::path() : *below.begin();
+}
+
+/// Throws unless there is a folder with the lists.
+void require_lists(const fs::path& folder) {
+    std::error_code error;
+    const fs::file_status status = fs::status(folder, error);
+    if (!fs::exists(status)) {
+        const bool missing = status.type() == fs::file_type::not_found;
+        throw std::runtime_error(folder.string() + ": " + (missing ? "no such folder" : error.message()));
+    }
+    if (!fs::is_directory(status)) throw std::runtime_error(folder.string() + ": not a folder");
+    if (holds_lists(folder)) return;
+    if (fs::directory_iterator(folder, error); error) {
+        throw std::runtime_error(folder.string() + ": cannot be read: " + error.message());
+    }
+    const fs::path below = folder_below(folder);
+    throw std::runtime_error(
+        folder.string() + ": neither depth.txt nor associations.txt: not a folder in the TUM layout" +
+        (below.empty() ? std::string("; a line of depth.txt is `timestamp depth/name.png`")
+                       : "; " + below.string() + " is one"));
+}
+
+/// How many images of a list the pairs leave out, in a line; empty if none.
+std::string left_out(const fs::path& folder, const char* list, const std::set<fs::path>& used) {
+    if (!stands(folder / list)) return {};
+    std::size_t count = 0;
+    const auto images = read_image_list(folder / list).entries;
+    for (const ListedImage& image : images) count += used.count(image.file) == 0 ? 1 : 0;
+    if (count == 0) return {};
+    return (folder / "associations.txt").string() + ": leaves out " + std::to_string(count) + " of the " +
+           std::to_string(images.size()) + " images of " + list;
+}
+
+/// The pairs that the folder gives, with a note of what they leave out.
+std::vector<ListedFrame> given_pairs(const fs::path& folder, std::vector<std::string>& notes) {
+    auto list = read_associations(folder / "associations.txt");
+    notes.insert(notes.end(), list.notes.begin(), list.notes.end());
+    std::set<fs::path> depth, color;
+    for (const ListedFrame& frame : list.entries) {
+        depth.insert(frame.depth.file);
+        color.insert(frame.color->file);
+    }
+    for (const auto& [name, used] : {std::pair{"depth.txt", &depth}, std::pair{"rgb.txt", &color}}) {
+        try {
+            if (const std::string text = left_out(folder, name, *used); !text.empty()) notes.push_back(text);
+        } catch (const std::runtime_error& error) {
+            notes.push_back(std::string(error.what()) + "; associations.txt is used, this list is not");
         }
     }
-}
-
-bool names_depth(const std::string& file) {
-    return file.find("depth") != std::string::npos;
-}
-
-/// The reason with the file in front, unless the reason names it already.
-std::string with_file(const fs::path& file, const std::exception& error) {
-    const std::string reason = error.what();
-    return reason.starts_with(file.string()) ? reason : file.string() + ": " + reason;
+    return list.entries;
 }
 
 /// Frames of the folder: its associations, or its lists associated.
-std::vector<ListedFrame> list_frames(const fs::path& folder, const SourceOptions& options) {
-    if (!fs::is_directory(folder)) {
-        throw std::runtime_error(folder.string() +
-                                 (fs::exists(folder) ? ": not a folder" : ": no such folder"));
+std::vector<ListedFrame> list_frames(const fs::path& folder, const SourceOptions& options,
+                                     std::vector<std::string>& notes) {
+    require_lists(folder);
+    if (stands(folder / "associations.txt")) return given_pairs(folder, notes);
+    const auto depth = read_image_list(folder / "depth.txt");
+    List<ListedImage> color;
+    if (stands(folder / "rgb.txt")) {
+        color = read_image_list(folder / "rgb.txt");
+    } else {
+        color.notes.push_back((folder / "rgb.txt").string() + ": missing; the frames have no colour");
     }
-    if (fs::exists(folder / "associations.txt")) return read_associations(folder / "associations.txt");
-    if (!fs::exists(folder / "depth.txt")) {
-        throw std::runtime_error(folder.string() +
-                                 ": neither depth.txt nor associations.txt: not a folder in the TUM layout");
-    }
-    std::vector<ListedImage> color;
-    if (fs::exists(folder / "rgb.txt")) color = read_image_list(folder / "rgb.txt");
-    return associate(read_image_list(folder / "depth.txt"), color,
-                     std::llround(options.max_color_gap_s * 1e6));
+    notes.insert(notes.end(), depth.notes.begin(), depth.notes.end());
+    notes.insert(notes.end(), color.notes.begin(), color.notes.end());
+    const std::int64_t max_gap_us = std::llround(options.max_color_gap_s * 1e6);
+    auto frames = associate(depth.entries, color.entries, max_gap_us);
+    const std::string left = left_over(frames, color.entries, max_gap_us);
+    if (!left.empty() && stands(folder / "rgb.txt")) notes.push_back(folder.string() + ": " + left);
+    return frames;
+}
+
+/// What is wrong with a file: the reason alone, and with the file before it.
+void blame(const fs::path& file, const std::exception& error, ReadResult& result) {
+    constexpr std::size_t kLongest = 400;
+    result.reason = shown_text(error.what(), kLongest);
+    const std::string prefix = shown_text(file.string(), kLongest) + ": ";
+    if (result.reason.starts_with(prefix)) result.reason.erase(0, prefix.size());
+    result.message = prefix + result.reason;
+}
+
+void blame_end(const fs::path& file, ReadResult& result) {
+    result.end_missing = true;
+    if (!result.message.empty()) return;  // of the colour, which is worse
+    blame(file, std::runtime_error("the PNG is cut short, but behind its last pixel; it is used"), result);
 }
 
 }  // namespace
 
-std::vector<ListedImage> read_image_list(const fs::path& file) {
-    std::vector<ListedImage> images;
-    for_each_line(file, "`timestamp filename`", [&](const std::vector<std::string>& fields) {
-        if (fields.size() < 2) return false;
-        const auto utime = parse_utime(fields[0]);
-        if (utime) images.push_back({*utime, fields[1]});
-        return utime.has_value();
-    });
-    std::stable_sort(images.begin(), images.end(),
-                     [](const auto& a, const auto& b) { return a.utime < b.utime; });
-    return images;
-}
-
-std::vector<ListedFrame> read_associations(const fs::path& file) {
-    std::vector<ListedFrame> frames;
-    constexpr const char* kExpected =
-        "`timestamp rgb-file timestamp depth-file` or the other way round, with \"depth\" in one file's name "
-        "only";
-    for_each_line(file, kExpected, [&](const std::vector<std::string>& fields) {
-        if (fields.size() < 4 || names_depth(fields[1]) == names_depth(fields[3])) return false;
-        const auto first = parse_utime(fields[0]), second = parse_utime(fields[2]);
-        if (!first || !second) return false;
-        const ListedImage a{*first, fields[1]}, b{*second, fields[3]};
-        frames.push_back(names_depth(fields[1]) ? ListedFrame{a, b} : ListedFrame{b, a});
-        return true;
-    });
-    std::stable_sort(frames.begin(), frames.end(),
-                     [](const auto& a, const auto& b) { return a.depth.utime < b.depth.utime; });
-    return frames;
-}
-
-std::vector<ListedFrame> associate(const std::vector<ListedImage>& depth,
-                                   const std::vector<ListedImage>& color, std::int64_t max_gap_us) {
-    std::vector<std::tuple<std::int64_t, std::size_t, std::size_t>> pairs;  // gap, depth, colour
-    std::size_t low = 0;
-    for (std::size_t i = 0; i < depth.size(); ++i) {
-        while (low < color.size() && color[low].utime < depth[i].utime - max_gap_us) ++low;
-        for (std::size_t j = low; j < color.size() && color[j].utime <= depth[i].utime + max_gap_us; ++j) {
-            pairs.emplace_back(std::llabs(color[j].utime - depth[i].utime), i, j);
-        }
-    }
-    std::sort(pairs.begin(), pairs.end());
-    std::vector<ListedFrame> frames;
-    for (const ListedImage& image : depth) frames.push_back({image, std::nullopt});
-    std::vector<bool> taken(color.size(), false);
-    for (const auto& [gap, i, j] : pairs) {
-        if (frames[i].color || taken[j]) continue;
-        frames[i].color = color[j];
-        taken[j] = true;
-    }
-    return frames;
-}
-
 Dataset::Dataset(const fs::path& folder, const SourceOptions& options)
-    : folder_(folder), frames_(list_frames(folder, options)) {
+    : folder_(folder), frames_(list_frames(folder, options, notes_)) {
     if (frames_.empty()) throw std::runtime_error(folder.string() + ": its lists name no depth images");
-    camera_ = camera_of_folder(folder);
+    camera_ = camera_of_folder(folder, &notes_);
     const auto [from, to] = frames_within(options.frames, frames_.size());
     frames_ = {frames_.begin() + static_cast<std::ptrdiff_t>(from),
                frames_.begin() + static_cast<std::ptrdiff_t>(to)};
@@ -138,31 +139,48 @@ Dataset::Dataset(const fs::path& folder, const SourceOptions& options)
 
 ReadResult Dataset::next(SensorFrame& frame) {
     frame = {};
-    if (next_ == frames_.size()) return {ReadResult::Status::kEnd, ""};
+    if (next_ == frames_.size()) return {};
     const ListedFrame& listed = frames_[next_++];
-    const fs::path depth_file = folder_ / listed.depth.file;
+    ReadResult result;
+    result.status = ReadResult::Status::kFrame;
+    bool depth_whole = true, color_whole = true;
     try {
-        frame.depth = decode_depth_png(read_file(depth_file, kMaxImageBytes), camera_.depth.width,
-                                       camera_.depth.height);
-        frame.utime = listed.depth.utime;
+        depth_whole = read_depth(listed.depth, frame);
     } catch (const std::exception& error) {
-        return {ReadResult::Status::kBroken, with_file(depth_file, error)};
+        frame = {};
+        result.status = ReadResult::Status::kBroken;
+        blame(folder_ / listed.depth.file, error, result);
+        return result;
     }
-    if (!listed.color) return {ReadResult::Status::kFrame, ""};
-    const fs::path color_file = folder_ / listed.color->file;
-    try {
-        read_color(*listed.color, frame);
-    } catch (const std::exception& error) {
-        return {ReadResult::Status::kFrame,
-                with_file(color_file, error) + "; the frame is used without colour"};
+    if (listed.color) {
+        try {
+            color_whole = read_color(*listed.color, frame);
+        } catch (const std::exception& error) {
+            blame(folder_ / listed.color->file, error, result);
+            result.color_left_out = true;
+            result.message += "; the frame is used without colour";
+        }
     }
-    return {ReadResult::Status::kFrame, ""};
+    if (!depth_whole) blame_end(folder_ / listed.depth.file, result);
+    if (!color_whole) blame_end(folder_ / listed.color->file, result);
+    return result;
 }
 
-void Dataset::read_color(const ListedImage& image, SensorFrame& frame) const {
+/// Reads a depth image into the frame; false if its file is cut short behind the pixels.
+bool Dataset::read_depth(const ListedImage& image, SensorFrame& frame) const {
+    bool end_missing = false;
+    frame.depth = decode_depth_png(read_file(folder_ / image.file, kMaxImageBytes), camera_.depth.width,
+                                   camera_.depth.height, &end_missing);
+    frame.utime = image.utime;
+    return !end_missing;
+}
+
+/// The same for colour.
+bool Dataset::read_color(const ListedImage& image, SensorFrame& frame) const {
     const std::string bytes = read_file(folder_ / image.file, kMaxImageBytes);
+    bool end_missing = false;
     if (is_png(bytes)) {
-        frame.color = decode_color_png(bytes, camera_.color.width, camera_.color.height);
+        frame.color = decode_color_png(bytes, camera_.color.width, camera_.color.height, &end_missing);
     } else if (is_jpeg(bytes)) {
         check_jpeg(bytes, camera_.color.width, camera_.color.height);
         frame.color_jpeg.assign(bytes.begin(), bytes.end());
@@ -170,6 +188,7 @@ void Dataset::read_color(const ListedImage& image, SensorFrame& frame) const {
         throw std::runtime_error("neither a PNG nor a JPEG");
     }
     frame.color_utime = image.utime;
+    return !end_missing;
 }
 
 }  // namespace planemap

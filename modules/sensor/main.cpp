@@ -9,6 +9,7 @@ int main(int argc, char** argv) {
                                             planemap::sim::simulator_help());
     std::string input;
     planemap::SensorShellOptions options;
+    options.live = true;
     planemap::SourceOptions source;
     process.flags().add_positional("input", input,
                                    "TUM-layout folder, or sim:WORLD[?KEY=VALUE&...], see above");

@@ -46,12 +46,15 @@ Context open(std::string_view bytes, int width, int height, spng_ihdr& header) {
 }
 
 /// Decodes all pixels into `out`, and reads on to the end of the file so that a missing end is noticed.
-void decode(spng_ctx* context, int format, void* out, std::size_t bytes) {
+void decode(spng_ctx* context, int format, void* out, std::size_t bytes, bool* end_missing) {
+    constexpr const char* kDoing = "cut short or corrupt PNG";
     std::size_t needed = 0;
     check(spng_decoded_image_size(context, format, &needed), "bad PNG");
     if (needed != bytes) throw std::runtime_error("bad PNG: unexpected size of the decoded image");
-    check(spng_decode_image(context, out, bytes, format, 0), "cut short or corrupt PNG");
-    check(spng_decode_chunks(context), "cut short or corrupt PNG");
+    check(spng_decode_image(context, out, bytes, format, 0), kDoing);
+    const int end = spng_decode_chunks(context);
+    if (end_missing != nullptr) *end_missing = end == SPNG_IO_EOF;
+    if (end_missing == nullptr || end != SPNG_IO_EOF) check(end, kDoing);
 }
 
 const char* type_name(int color_type) {
@@ -100,7 +103,7 @@ bool is_png(std::string_view bytes) {
     return bytes.starts_with("\x89PNG\r\n\x1a\n");
 }
 
-DepthImage decode_depth_png(std::string_view bytes, int width, int height) {
+DepthImage decode_depth_png(std::string_view bytes, int width, int height, bool* end_missing) {
     spng_ihdr header{};
     const Context context = open(bytes, width, height, header);
     if (header.color_type != SPNG_COLOR_TYPE_GRAYSCALE || header.bit_depth != 16) {
@@ -108,11 +111,12 @@ DepthImage decode_depth_png(std::string_view bytes, int width, int height) {
                                  std::to_string(header.bit_depth) + "-bit " + type_name(header.color_type));
     }
     DepthImage depth(width, height);
-    decode(context.get(), SPNG_FMT_PNG, depth.pixels.data(), depth.pixels.size() * sizeof(std::uint16_t));
+    decode(context.get(), SPNG_FMT_PNG, depth.pixels.data(), depth.pixels.size() * sizeof(std::uint16_t),
+           end_missing);
     return depth;
 }
 
-RgbImage decode_color_png(std::string_view bytes, int width, int height) {
+RgbImage decode_color_png(std::string_view bytes, int width, int height, bool* end_missing) {
     spng_ihdr header{};
     const Context context = open(bytes, width, height, header);
     if (header.bit_depth != 8) {
@@ -121,7 +125,7 @@ RgbImage decode_color_png(std::string_view bytes, int width, int height) {
     }
     RgbImage color(width, height);
     static_assert(sizeof(Rgb) == 3);
-    decode(context.get(), SPNG_FMT_RGB8, color.pixels.data(), color.pixels.size() * sizeof(Rgb));
+    decode(context.get(), SPNG_FMT_RGB8, color.pixels.data(), color.pixels.size() * sizeof(Rgb), end_missing);
     return color;
 }
 

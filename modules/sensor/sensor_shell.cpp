@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "core/validation.hpp"
 #include "messages/channels.hpp"
@@ -27,32 +28,71 @@ void SensorShellOptions::validate() const {
 }
 
 SensorShell::SensorShell(Bus& bus, std::unique_ptr<FrameSource> source, SensorShellOptions options)
-    : bus_(bus), source_(std::move(source)), options_(options) {
+    : bus_(bus), source_(std::move(source)), options_(options), last_camera_wall_us_(now_us()) {
     options_.validate();
+    for (const std::string& note : source_->notes()) spdlog::warn("{}", note);
+    if (options_.live) ahead_ = std::make_unique<ReadAhead>(source_);
 }
 
-bool SensorShell::read() {
-    while (true) {
-        const ReadResult result = source_->next(frame_);
-        if (result.status == ReadResult::Status::kEnd) return false;
-        status_.received();
-        if (result.status == ReadResult::Status::kFrame) {
-            if (!result.message.empty()) {
-                ++colorless_;
-                spdlog::warn("colour left out: {}", result.message);
-            }
-            return true;
-        }
-        ++broken_;
-        status_.dropped();
-        status_.set_text(result.message);
-        spdlog::warn("frame skipped: {}", result.message);
+/// Logs the first fault of each kind; the status counts them all.
+void SensorShell::complain(const char* what, const ReadResult& result) {
+    constexpr std::size_t kMostTold = 16;
+    status_.lost(what);
+    const std::string& reason = result.reason.empty() ? result.message : result.reason;
+    if (told_.size() < kMostTold && told_.insert(reason).second) {
+        spdlog::warn("{} (the same of other files is only counted)", result.message);
     }
 }
 
+void SensorShell::count(const ReadResult& result) {
+    status_.received();
+    if (result.status == ReadResult::Status::kBroken) {
+        ++broken_;
+        status_.dropped();
+        status_.set_text(result.message);
+        if (first_fault_.empty()) first_fault_ = result.message;
+        complain("frames that cannot be read", result);
+        return;
+    }
+    if (result.color_left_out) {
+        ++colorless_;
+        complain("colour images that cannot be read", result);
+    }
+    if (result.end_missing) {
+        ++ends_missing_;
+        complain("ends of images whose pixels are all there", result);
+    }
+}
+
+/// What the source says next; false if it says nothing yet.
+bool SensorShell::next(ReadResult& result) {
+    if (!ahead_) {
+        result = source_->next(frame_);
+        return true;
+    }
+    constexpr std::chrono::milliseconds kWait{20};
+    std::optional<ReadAhead::Item> item = ahead_->take(kWait);
+    if (!item) return false;
+    result = std::move(item->result);
+    frame_ = std::move(item->frame);
+    return true;
+}
+
+SensorShell::Read SensorShell::read() {
+    if (ended_) return Read::kEnd;
+    ReadResult result;
+    if (!next(result)) return Read::kNothing;
+    ended_ = result.status == ReadResult::Status::kEnd;
+    if (ended_) return Read::kEnd;
+    count(result);
+    return result.status == ReadResult::Status::kFrame ? Read::kFrame : Read::kNothing;
+}
+
 int SensorShell::poll() {
+    if (options_.live && camera_is_due(last_utime_)) publish_camera(last_utime_);
     if (!pending_) {
-        if (!read()) return -1;
+        const Read got = read();
+        if (got != Read::kFrame) return got == Read::kEnd ? -1 : 0;
         pending_ = true;
         if (start_wall_us_ == 0) {
             start_wall_us_ = now_us();
@@ -72,15 +112,28 @@ int SensorShell::poll() {
     return 0;
 }
 
+void SensorShell::finish() {
+    if (!ended_ || frames_ > 0) return;
+    status_.publish_if_due(bus_, now_us(), true);
+    throw std::runtime_error("none of the " + std::to_string(broken_) +
+                             " frames could be read; the first: " + first_fault_);
+}
+
+/// True a second after the camera was told last: live by the wall clock, else by the stamps of the frames.
+bool SensorShell::camera_is_due(std::int64_t utime) const {
+    if (options_.live) return now_us() - last_camera_wall_us_ >= kCameraPeriodUs;
+    return std::abs(utime - last_camera_utime_) >= kCameraPeriodUs;
+}
+
 void SensorShell::publish_camera(std::int64_t utime) {
     bus_.publish(channels::kCameraInfo, to_message(source_->camera(), utime, camera_seq_++));
     last_camera_utime_ = utime;
+    last_camera_wall_us_ = now_us();
 }
 
 void SensorShell::publish(const SensorFrame& frame) {
     const ModuleStatus::Work work(status_);
-    if (camera_seq_ == 0 || std::abs(frame.utime - last_camera_utime_) >= kCameraPeriodUs)
-        publish_camera(frame.utime);
+    if (camera_seq_ == 0 || camera_is_due(frame.utime)) publish_camera(frame.utime);
     bot_core::images_t images;
     images.utime = frame.utime;
     const CameraInfo& camera = source_->camera();

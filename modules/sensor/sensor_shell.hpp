@@ -2,9 +2,12 @@
 #pragma once
 
 #include <memory>
+#include <set>
+#include <string>
 
 #include "messages/convert.hpp"
 #include "messages/process.hpp"
+#include "sensor/read_ahead.hpp"
 #include "sensor/source.hpp"
 
 namespace planemap {
@@ -15,20 +18,25 @@ struct SensorShellOptions {
     std::string color = "jpeg";  ///< "jpeg" or "raw": how colour pixels are sent; a stored JPEG goes as it is
     std::string depth = "zipped";  ///< "zipped" or "raw": how depth is sent
     int jpeg_quality = 94;
+    bool live = false;  ///< as a process of its own: the source is read on a thread of its own, and the
+                        ///< camera is told once a second by the wall clock. Otherwise all happens in poll(),
+                        ///< and by the time of the data: the same source gives the same messages
 
     /// Throws std::invalid_argument that names every bad field.
     void validate() const;
 };
 
 /// Publishes a source's frames (OPENNI_FRAME) and its camera (PLANEMAP_CAMERA_INFO at the start and once a
-/// second).
+/// second). A fault of the source is logged when it is first seen, and counted.
 class SensorShell : public Shell {
   public:
     SensorShell(Bus& bus, std::unique_ptr<FrameSource> source, SensorShellOptions options);
 
     ModuleStatus& status() override { return status_; }
-    /// Publishes the next frame if it is due; negative at the end of the source.
+    /// Reads the next frame, or publishes it if it is due; negative at the end of the source.
     int poll() override;
+    /// Throws std::runtime_error if the source came to its end without one frame that could be used.
+    void finish() override;
 
     const FrameSource& source() const { return *source_; }
     std::int64_t frames() const { return frames_; }          ///< published
@@ -37,21 +45,34 @@ class SensorShell : public Shell {
     std::int64_t colorless() const {
         return colorless_;
     }  ///< published without their colour, which could not be read
+    std::int64_t ends_missing() const {
+        return ends_missing_;
+    }  ///< published, though a file of them is cut short behind its last pixel
 
   private:
+    enum class Read { kFrame, kNothing, kEnd };
+
     void publish(const SensorFrame& frame);
     void publish_camera(std::int64_t utime);
-    bool read();
+    bool camera_is_due(std::int64_t utime) const;
+    Read read();
+    bool next(ReadResult& result);
+    void count(const ReadResult& result);
+    void complain(const char* what, const ReadResult& result);
 
     Bus& bus_;
-    std::unique_ptr<FrameSource> source_;
+    std::shared_ptr<FrameSource> source_;
     SensorShellOptions options_;
+    std::unique_ptr<ReadAhead> ahead_;  ///< only live
     ModuleStatus status_{"sensor"};
     SensorFrame frame_;
-    bool pending_ = false;
-    std::int64_t frames_ = 0, broken_ = 0, colorless_ = 0;
-    std::int64_t start_wall_us_ = 0, start_utime_ = 0, last_utime_ = 0, last_camera_utime_ = 0;
+    bool pending_ = false, ended_ = false;
+    std::int64_t frames_ = 0, broken_ = 0, colorless_ = 0, ends_missing_ = 0;
+    std::int64_t start_wall_us_ = 0, start_utime_ = 0, last_utime_ = 0;
+    std::int64_t last_camera_utime_ = 0, last_camera_wall_us_ = 0;
     std::int32_t camera_seq_ = 0;
+    std::set<std::string> told_;  ///< faults that were logged
+    std::string first_fault_;     ///< of a frame that could not be used
 };
 
 /// --rate, --speed.

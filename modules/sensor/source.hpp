@@ -25,12 +25,15 @@ struct SensorFrame {
 /// What FrameSource::next() did.
 struct ReadResult {
     enum class Status {
-        kFrame,   ///< a frame; with a message if its colour could not be used and was left out
+        kFrame,   ///< a frame; with a message if not all is well with it
         kBroken,  ///< a frame that cannot be used, to be counted and skipped; the message says why
         kEnd,     ///< no more frames, and nothing more will come
     };
     Status status = Status::kEnd;
-    std::string message;  ///< one line: file and reason; empty when all is well
+    std::string message;   ///< one line: file and reason; empty when all is well
+    std::string reason{};  ///< the reason alone, alike for all files with the same fault; empty: the message
+    bool color_left_out = false;  ///< of a frame: its colour could not be used and is not in it
+    bool end_missing = false;     ///< of a frame: a file of it is cut short, but behind its last pixel
 };
 
 /// A finite or endless sequence of frames from one sensor.
@@ -45,6 +48,8 @@ class FrameSource {
     /// Reads the next frame. On kFrame `frame` is whole: the depth has the camera's size. Otherwise it is
     /// empty.
     virtual ReadResult next(SensorFrame& frame) = 0;
+    /// A line each of what the user should know about the source before its first frame.
+    virtual std::vector<std::string> notes() const { return {}; }
 };
 
 /// How an input is read.
@@ -57,8 +62,8 @@ struct SourceOptions {
 };
 
 /// Opens `input`: a TUM-layout folder (see Dataset), or "sim:WORLD?key=value&..." (see SimulatedSource).
-/// Throws std::runtime_error naming file and reason if there is nothing to read, std::invalid_argument for a
-/// bad camera.json or simulator name.
+/// Throws std::runtime_error naming file and reason if there is nothing to read, and what to do about it;
+/// std::invalid_argument for a bad camera.json or simulator name.
 std::unique_ptr<FrameSource> open_source(const std::string& input, const SourceOptions& options = {});
 
 }  // namespace planemap

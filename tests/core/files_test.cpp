@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <fstream>
 #include <stdexcept>
@@ -51,6 +52,15 @@ TEST(Files, FailureNamesTheFileAndKeepsTheOldOne) {
     EXPECT_THAT(error_of([&] { write_file(folder / "none/a", "x"); }), HasSubstr("none/a"));
     EXPECT_NE(error_of([&] { write_file(folder.path(), "x"); }), "") << "the target is a folder";
     EXPECT_TRUE(std::filesystem::is_directory(folder.path()));
+}
+
+TEST(Files, APipeIsNotWaitedFor) {
+    const TemporaryFolder folder;
+    ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+    EXPECT_THAT(error_of([&] { read_file(folder / "pipe"); }), HasSubstr("not a regular file"));
+    EXPECT_THAT(error_of([&] { read_file("/dev/zero"); }), HasSubstr("not a regular file"));
+    std::filesystem::create_symlink(folder / "loop", folder / "loop");
+    EXPECT_THAT(error_of([&] { read_file(folder / "loop"); }), HasSubstr("loop: cannot open"));
 }
 
 TEST(Files, RefusesMoreThanTheLimit) {

@@ -74,6 +74,21 @@ TEST(Trajectory, CommentsBlankLinesCommasAndLineEndings) {
     EXPECT_TRUE(read_text(folder, "# only a comment").empty());
 }
 
+TEST(Trajectory, StampsMayBeInAnyUnitAndAreExact) {
+    const TemporaryFolder folder;
+    for (const char* text : {"\xef\xbb\xbf"
+                             "1311868164.363181 1 2 3 0 0 0 1\n1311868164.396514 1 2 3 0 0 0 1\n",
+                             "1311868164363181000 1 2 3 0 0 0 1\n1311868164396514000 1 2 3 0 0 0 1\n",
+                             "1.311868164363181e+09 1 2 3 0 0 0 1\n1.311868164396514e+09 1 2 3 0 0 0 1\n"}) {
+        const Trajectory trajectory = read_text(folder, text);
+        ASSERT_EQ(trajectory.size(), 2u) << text;
+        EXPECT_EQ(trajectory[0].utime, 1311868164363181) << text;
+        EXPECT_EQ(trajectory[1].utime, 1311868164396514) << text;
+    }
+    EXPECT_THAT(error_of(folder, "1311868164.3 0 0 0 0 0 0 1\n1311868164363181000 0 0 0 0 0 0 1\n"),
+                testing::AllOf(HasSubstr("t.txt:2:"), HasSubstr("is in nanoseconds")));
+}
+
 TEST(Trajectory, HostileLinesAreNamed) {
     const TemporaryFolder folder;
     const std::string good = "1 0 0 0 0 0 0 1\n";

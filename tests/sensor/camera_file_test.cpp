@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/sensor_preset.hpp"
+#include "data_folder.hpp"
 #include "sensor/temporary_folder.hpp"
 
 namespace planemap {
@@ -77,10 +79,141 @@ TEST(CameraFile, UnregisteredNeedsBothCamerasAndTheTransform) {
 }
 
 TEST(CameraFile, WhatIsNotJsonIsNamedWithAnExample) {
-    for (const char* text : {"", "{", "[1, 2]", "\xff\xfe", "nonsense"}) {
+    for (const char* text : {"", "{", "[1, 2]", "\xfe", "nonsense"}) {
         EXPECT_THAT(error_of([&] { read(text); }), AllOf(HasSubstr("camera.json"), HasSubstr("depth_camera")))
             << text;
     }
+}
+
+/// A file that is right, with something added before its end.
+std::string with(const std::string& more) {
+    return std::string(kDepth) + ", \"depth_units_per_metre\": 1000" + (more.empty() ? "" : ", ") + more +
+           "}";
+}
+
+TEST(CameraFile, UnknownKeysAreErrorsWithTheNearestOne) {
+    const std::string error = error_of([] {
+        read(R"({"depth_camera": {"width": 640, "height": 480, "fx": 585, "fy": 580, "cx": 320, "cz": 240},
+                 "colour_camera": {}, "depth_units_per_meter": 1000, "zzz": 1, "noise": {"base": 0.001}})");
+    });
+    EXPECT_THAT(
+        error, AllOf(HasSubstr("colour_camera is not a known key, must be color_camera;"),
+                     HasSubstr("depth_units_per_meter is not a known key, must be depth_units_per_metre;"),
+                     HasSubstr("depth_camera.cz is not a known key, must be one of width, height, fx"),
+                     HasSubstr("noise.base is not a known key, must be base_m"),
+                     HasSubstr("zzz is not a known key, must be one of sensor, serial"),
+                     HasSubstr("depth_units_per_metre is missing"), HasSubstr("depth_camera.cy is missing")));
+    EXPECT_THAT(error_of([] {
+                    read(with(R"("color_from_depth": {"rotation_vector_rad": [0, 0, 0],
+                                            "translation": [0, 0, 0]}, "registered": true)"));
+                }),
+                AllOf(HasSubstr("color_from_depth.translation is not a known key, must be translation_m"),
+                      HasSubstr("color_from_depth.translation_m is missing")));
+    std::string many = "\"\\u001b[2J\": 1";
+    for (int i = 0; i < 1000; ++i) many += ", \"key" + std::to_string(i) + "\": 1";
+    const std::string bounded = error_of([&] { read(with(many)); });
+    EXPECT_THAT(bounded, AllOf(HasSubstr("993 more unknown keys"), Not(HasSubstr("\x1b"))));
+    EXPECT_LT(bounded.size(), 3000u);
+}
+
+TEST(CameraFile, AbsurdValuesAreRefusedWithWhatIsAllowed) {
+    const std::pair<const char*, const char*> cases[] = {
+        {R"("color_from_depth": {"rotation_vector_rad": [0, 0, 0], "translation_m": [1e6, 0, 0]})",
+         "color_from_depth.translation_m is [1000000.0,0,0], must be a list of 3, each a number from -10 to "
+         "10 m"},
+        {R"("color_from_depth": {"rotation_vector_rad": [90, 0, 0], "translation_m": [0, 0, 0]})",
+         "color_from_depth.rotation_vector_rad is [90,0,0]"},
+        {R"("noise": {"base_m": 1e300})", "noise.base_m is 1e+300, must be a number from 0 to 1 m"},
+        {R"("noise": {"quadratic_per_m": 2})",
+         "noise.quadratic_per_m is 2, must be a number from 0 to 1 per m"},
+        {R"("noise": {"offset_m": -1e9})", "noise.offset_m is -1000000000.0"},
+        {R"("depth_range_m": [0.3, 1e9])", "depth_range_m is [0.3,1000000000.0]"},
+        {R"("depth_range_m": [0, 0])", "depth_range_m is [0,0]"},
+        {R"("depth_range_m": [70, 80])",
+         "depth_units_per_metre is 1000, must be such that 16 bits reach beyond"},
+        {R"("poses_of": "depth_camera")", "poses_of is \"depth_camera\", must be color_camera"},
+        {R"("noise": {"base_m": "NaN"})", "noise.base_m is \"NaN\""},
+    };
+    for (const auto& [more, expected] : cases) {
+        EXPECT_THAT(error_of([&] { read(with(more)); }), HasSubstr(expected)) << more;
+    }
+    const std::string camera = error_of([] {
+        read(R"({"depth_camera": {"width": 640, "height": 480, "fx": 1e9, "fy": 1e-3, "cx": 1e5, "cy": -1e5},
+                 "depth_units_per_metre": 1e-9})");
+    });
+    for (const char* expected : {"depth_camera.fx is 1000000000.0, must be a number from 32 to 32000 pixels",
+                                 "depth_camera.fy is 0.001",
+                                 "depth_camera.cx is 100000.0, must be a number from -640 to 1280 pixels",
+                                 "depth_camera.cy is -100000.0",
+                                 "depth_units_per_metre is 1e-09, must be a number from 1 to 1e+06"}) {
+        EXPECT_THAT(camera, HasSubstr(expected));
+    }
+}
+
+TEST(CameraFile, SyntaxErrorsHaveLineAndColumn) {
+    EXPECT_THAT(error_of([] { read("{\n \"depth_camera\": {,}\n}"); }),
+                HasSubstr("camera.json: line 2, column 19: syntax error"));
+    EXPECT_THAT(error_of([] { read(with("\"depth_units_per_metre\": 5000")); }), HasSubstr("stands twice"));
+}
+
+TEST(CameraFile, APresetGivesRangeAndNoise) {
+    for (const SensorPreset& preset : sensor_presets()) {
+        const CameraInfo camera = read(with("\"sensor\": \"" + preset.name + "\""));
+        EXPECT_EQ(camera.depth_min_m, preset.depth_min_m) << preset.name;
+        EXPECT_EQ(camera.depth_max_m, preset.depth_max_m) << preset.name;
+        EXPECT_EQ(camera.noise, preset.noise) << preset.name;
+    }
+    EXPECT_EQ(read(with("")).depth_min_m, 0.3) << "without one, the default";
+    EXPECT_EQ(read(with("")).depth_max_m, 8.0);
+}
+
+TEST(CameraFile, WhatTheFileSaysOverridesThePreset) {
+    const SensorPreset& preset = *find_sensor_preset("d435");
+    const CameraInfo camera =
+        read(with(R"("sensor": "d435", "depth_range_m": [0.2, 6], "noise": {"base_m": 0.004})"));
+    EXPECT_EQ(camera.depth_min_m, 0.2);
+    EXPECT_EQ(camera.depth_max_m, 6);
+    EXPECT_EQ(camera.noise, (DepthNoise{0.004, preset.noise.quadratic_per_m, preset.noise.offset_m}));
+}
+
+TEST(CameraFile, AnUnknownPresetListsAllAndTheNearest) {
+    EXPECT_THAT(
+        error_of([] { read(with(R"("sensor": "kinect_v2")")); }),
+        HasSubstr(
+            "sensor is \"kinect_v2\", must be one of kinect1, xtion, kinect2, azure_kinect, d435, l515, "
+            "lidar_phone; the nearest is kinect2"));
+    EXPECT_THAT(error_of([] { read(with(R"("sensor": "zed")")); }), Not(HasSubstr("nearest")));
+    EXPECT_THAT(error_of([] { read(with(R"("sensor": "")")); }), HasSubstr("must be one of kinect1"));
+    EXPECT_THAT(error_of([] { read(with(R"("sensor": 1)")); }), HasSubstr("sensor is 1"));
+}
+
+TEST(CameraFile, WhatIsKnownButNotUsedIsNoted) {
+    const TemporaryFolder folder;
+    std::vector<std::string> notes;
+    const auto file = folder.write("camera.json", with(R"("note": "hello", "poses_of": "color_camera")"));
+    read_camera_file(file, &notes);
+    EXPECT_TRUE(notes.empty());
+    folder.write("camera.json", with(R"("distortion": [0.1], "body_from_camera": {}, "registered": true,
+        "color_camera": {"width": 640, "height": 480, "fx": 585, "fy": 580, "cx": 320, "cy": 240, "distortion": []},
+        "color_from_depth": {"rotation_vector_rad": [0, 0, 0], "translation_m": [0, 0, 0]})"));
+    read_camera_file(file, &notes);
+    ASSERT_EQ(notes.size(), 1u);
+    EXPECT_THAT(notes[0], HasSubstr("camera.json: known, but not used: distortion, color_camera.distortion, "
+                                    "body_from_camera, color_from_depth (registered is true)"));
+    EXPECT_NO_THROW(read_camera_file(file));
+}
+
+TEST(CameraFile, EveryOneOfTheSharedDataIsRead) {
+    PLANEMAP_NEEDS_DATA("");
+    int files = 0;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(test::data_folder(""))) {
+        if (entry.path().filename() != "camera.json") continue;
+        std::vector<std::string> notes;
+        EXPECT_NO_THROW(read_camera_file(entry.path(), &notes)) << entry.path();
+        EXPECT_TRUE(notes.empty()) << entry.path();
+        ++files;
+    }
+    EXPECT_GT(files, 10);
 }
 
 TEST(CameraFile, TumFoldersAreKnown) {

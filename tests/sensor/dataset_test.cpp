@@ -13,6 +13,7 @@ namespace planemap {
 namespace {
 
 using testing::AllOf;
+using testing::ElementsAre;
 using testing::HasSubstr;
 using Status = ReadResult::Status;
 
@@ -29,21 +30,6 @@ struct Folder : TemporaryFolder {
         write("depth.txt", "# depth\n1.0 depth/1.png\n2.0 depth/2.png\n");
     }
 };
-
-TEST(Associate, TakesTheNearestFirstAndEachOnce) {
-    const std::vector<ListedImage> depth{{0, "a"}, {30, "b"}, {100, "c"}};
-    const std::vector<ListedImage> color{{12, "x"}, {28, "y"}, {121, "z"}};
-    const auto frames = associate(depth, color, 20);
-    ASSERT_EQ(frames.size(), 3u);
-    EXPECT_EQ(frames[0].color->file, "x");
-    EXPECT_EQ(frames[1].color->file, "y");
-    EXPECT_FALSE(frames[2].color);
-    // One colour image between two depth images goes to the nearer one.
-    const auto shared = associate({{0, "a"}, {10, "b"}}, {{6, "x"}}, 20);
-    EXPECT_FALSE(shared[0].color);
-    EXPECT_EQ(shared[1].color->file, "x");
-    EXPECT_TRUE(associate({}, color, 20).empty());
-}
 
 TEST(Dataset, ReadsFramesInOrderOfTime) {
     const Folder folder;
@@ -126,6 +112,70 @@ TEST(Dataset, BrokenDepthIsOneBrokenFrame) {
     }
 }
 
+TEST(Dataset, APngCutShortBehindItsPixelsIsUsedAndTold) {
+    const DepthImage depth = numbered_depth(16, 12);
+    const std::string whole = encode_depth_png(depth);
+    const std::string rgb =
+        encode_png(16, 12, SPNG_COLOR_TYPE_TRUECOLOR, 8, std::vector<std::uint8_t>(576, 9));
+    constexpr std::size_t kEndMarker = 12;
+    const Folder folder;
+    folder.write("rgb.txt", "1.0 rgb/1.png\n");
+    for (const bool of_depth : {true, false}) {
+        folder.write("depth/1.png", whole.substr(0, whole.size() - (of_depth ? kEndMarker : 0)));
+        folder.write("rgb/1.png", rgb.substr(0, rgb.size() - (of_depth ? 0 : kEndMarker)));
+        Dataset dataset(folder.path());
+        SensorFrame frame;
+        const ReadResult result = dataset.next(frame);
+        EXPECT_EQ(result.status, Status::kFrame);
+        EXPECT_TRUE(result.end_missing);
+        EXPECT_FALSE(result.color_left_out);
+        EXPECT_THAT(result.message,
+                    AllOf(HasSubstr(of_depth ? "depth/1.png" : "rgb/1.png"), HasSubstr("cut short")));
+        EXPECT_EQ(frame.depth.pixels, depth.pixels);
+        EXPECT_EQ(frame.color(15, 11), (Rgb{9, 9, 9}));
+        EXPECT_FALSE(dataset.next(frame).end_missing);
+    }
+}
+
+TEST(Dataset, TheReasonIsTheSameForAllFilesWithTheSameFault) {
+    const Folder folder;
+    folder.write("depth.txt", "1.0 depth/none.png\n2.0 depth/neither.png\n3.0 depth/\x1b[2J.png\n");
+    Dataset dataset(folder.path());
+    SensorFrame frame;
+    const ReadResult first = dataset.next(frame), second = dataset.next(frame), third = dataset.next(frame);
+    EXPECT_NE(first.message, second.message);
+    EXPECT_EQ(first.reason, second.reason);
+    EXPECT_EQ(first.reason, "cannot open: No such file or directory");
+    EXPECT_EQ(third.reason, first.reason);
+    EXPECT_THAT(third.message, testing::Not(HasSubstr("\x1b")));
+}
+
+TEST(Dataset, NotesSayWhatIsLeftOver) {
+    const Folder folder;
+    EXPECT_THAT(Dataset(folder.path()).notes(), ElementsAre(HasSubstr("rgb.txt: missing")));
+    folder.write("rgb.txt", "1.0 a\n2.0 b\n");
+    EXPECT_THAT(Dataset(folder.path()).notes(), ElementsAre());
+    folder.write("rgb.txt", "1.0 a\n1.5 b\n2.5 c\n");
+    EXPECT_THAT(Dataset(folder.path()).notes(),
+                ElementsAre(AllOf(HasSubstr("1 of 2 depth images"), HasSubstr("the nearest is 0.5 s away"),
+                                  HasSubstr("2 of 3 colour images"))));
+    folder.write("associations.txt", "1.0 depth/1.png 1.0 a\n");
+    EXPECT_THAT(Dataset(folder.path()).notes(),
+                ElementsAre(HasSubstr("leaves out 1 of the 2 images of depth.txt"),
+                            HasSubstr("leaves out 2 of the 3 images of rgb.txt")));
+    folder.write("rgb.txt", "what\n");
+    EXPECT_THAT(Dataset(folder.path()).notes(), testing::Contains(HasSubstr("rgb.txt:1: expected")));
+}
+
+TEST(Dataset, WhatCameraJsonSaysInVainIsNoted) {
+    const Folder folder;
+    folder.write("rgb.txt", "1.0 a\n2.0 b\n");
+    folder.write("camera.json", R"({"depth_camera": {"width": 16, "height": 12, "fx": 20, "fy": 20, "cx": 8,
+        "cy": 6}, "depth_units_per_metre": 1000, "distortion": {}})");
+    EXPECT_THAT(Dataset(folder.path()).notes(),
+                ElementsAre(HasSubstr("camera.json: known, but not used: distortion")));
+}
+
 TEST(Dataset, AMissingFileIsABrokenFrame) {
     const Folder folder;
     folder.write("depth.txt", "1.0 depth/none.png\n2.0 depth\n");
@@ -181,6 +231,25 @@ TEST(Dataset, NothingToReadIsOneClearError) {
     const Folder folder;
     folder.write("depth.txt", "# nothing\n");
     EXPECT_THAT(error_of([&] { open_source(folder.path().string()); }), HasSubstr("no depth images"));
+}
+
+TEST(Dataset, WhatToDoIsSaid) {
+    const TemporaryFolder folder;
+    const auto log = folder.write("x.lcmlog", std::string("\xed\xa1\xda\x01", 4) + "and so on");
+    EXPECT_THAT(error_of([&] { open_source(log.string()); }),
+                AllOf(HasSubstr("x.lcmlog: not a folder but an LCM log"), HasSubstr("planemap-run"),
+                      HasSubstr("lcm-logplayer")));
+    const auto list = folder.write("in/depth.txt", "1 depth/1.png\n");
+    EXPECT_THAT(error_of([&] { open_source(list.string()); }), HasSubstr("give the folder that it lies in"));
+    EXPECT_THAT(error_of([&] { open_source(folder.write("a.bag", "#ROSBAG V2.0").string()); }),
+                HasSubstr("not a folder; give one with"));
+    EXPECT_THAT(error_of([&] { open_source(folder.path().string()); }), HasSubstr("/in is one"));
+    const auto loop = folder.path() / "loop";
+    std::filesystem::create_symlink(loop, loop);
+    EXPECT_THAT(error_of([&] { open_source(loop.string()); }), HasSubstr("symbolic links"));
+    std::filesystem::create_symlink(loop, folder.path() / "associations.txt");
+    EXPECT_THAT(error_of([&] { open_source(folder.path().string()); }),
+                AllOf(HasSubstr("associations.txt"), HasSubstr("symbolic links")));
 }
 
 TEST(Dataset, BadListsNameTheLine) {

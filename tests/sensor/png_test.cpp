@@ -77,6 +77,40 @@ TEST(Png, EveryTruncationIsAnError) {
     }
 }
 
+TEST(Png, AnEndBehindAllPixelsMayBeMissing) {
+    const DepthImage depth = numbered_depth(16, 12);
+    const std::string png = encode_depth_png(depth);
+    std::size_t mended = 0;
+    for (std::size_t size = 0; size <= png.size(); ++size) {
+        bool end_missing = false;
+        try {
+            const auto bytes = std::string_view(png).substr(0, size);
+            EXPECT_EQ(decode_depth_png(bytes, 16, 12, &end_missing).pixels, depth.pixels) << size;
+            mended += end_missing ? 1 : 0;
+        } catch (const std::runtime_error&) {
+            EXPECT_LT(size, png.size() - 12) << "all but the end marker was there";
+        }
+    }
+    EXPECT_GE(mended, 8u) << "an end marker of 12 bytes, whose checksum may always be missing";
+    bool end_missing = true;
+    decode_depth_png(png, 16, 12, &end_missing);
+    EXPECT_FALSE(end_missing);
+}
+
+TEST(Png, AChangedByteIsAnErrorWithAMissingEndToo) {
+    const DepthImage depth = numbered_depth(16, 12);
+    const std::string png = encode_depth_png(depth);
+    for (std::size_t i = 0; i < png.size() - 12; ++i) {
+        std::string damaged = png.substr(0, png.size() - 12);
+        damaged[i] = static_cast<char>(damaged[i] ^ 0x55);
+        bool end_missing = false;
+        try {
+            EXPECT_EQ(decode_depth_png(damaged, 16, 12, &end_missing).pixels, depth.pixels) << i;
+        } catch (const std::runtime_error&) {
+        }
+    }
+}
+
 TEST(Png, AChangedByteIsAnErrorOrChangesNothing) {
     const DepthImage depth = numbered_depth(16, 12);
     const std::string png = encode_depth_png(depth);

@@ -1,6 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sensor/sensor_shell.hpp"
 
+#include <gmock/gmock.h>
+#include <spdlog/sinks/ostream_sink.h>
+#include <spdlog/spdlog.h>
+
+#include <sstream>
+#include <thread>
+
 #include "shell_fixture.hpp"
 
 namespace planemap {
@@ -20,7 +27,11 @@ class FakeSource : public FrameSource {
         frame.utime = 1000000 + 300000 * index;
         frame.depth =
             DepthImage(camera_.depth.width, camera_.depth.height, static_cast<std::uint16_t>(1000 + index));
-        if (index == 4) return {ReadResult::Status::kFrame, "rgb/4.jpg: cut short"};
+        if (index == 4) {
+            ReadResult result{ReadResult::Status::kFrame, "rgb/4.jpg: cut short"};
+            result.color_left_out = true;
+            return result;
+        }
         frame.color_utime = frame.utime - 5000;
         frame.color = RgbImage(camera_.color.width, camera_.color.height, Rgb{10, 20, 30});
         return {ReadResult::Status::kFrame, ""};
@@ -29,6 +40,53 @@ class FakeSource : public FrameSource {
   private:
     CameraInfo camera_;
     int next_ = 0;
+};
+
+/// Frames of one pixel's worth at given stamps, which may wait before one of them.
+class StampedSource : public FrameSource {
+  public:
+    StampedSource(CameraInfo camera, std::vector<std::int64_t> stamps, std::size_t slow = 0, int slow_ms = 0)
+        : camera_(std::move(camera)), stamps_(std::move(stamps)), slow_(slow), slow_ms_(slow_ms) {}
+    const CameraInfo& camera() const override { return camera_; }
+    std::optional<std::size_t> size() const override { return stamps_.size(); }
+    ReadResult next(SensorFrame& frame) override {
+        frame = {};
+        if (slow_ms_ > 0 && next_ == slow_) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(slow_ms_));
+        }
+        if (next_ == stamps_.size()) return {};
+        frame.utime = stamps_[next_++];
+        frame.depth = DepthImage(camera_.depth.width, camera_.depth.height, 1000);
+        return {ReadResult::Status::kFrame, ""};
+    }
+
+  private:
+    CameraInfo camera_;
+    std::vector<std::int64_t> stamps_;
+    std::size_t slow_, next_ = 0;
+    int slow_ms_;
+};
+
+/// A source of nothing but faults.
+class BrokenSource : public FrameSource {
+  public:
+    explicit BrokenSource(CameraInfo camera, int frames) : camera_(std::move(camera)), left_(frames) {}
+    const CameraInfo& camera() const override { return camera_; }
+    std::optional<std::size_t> size() const override { return std::nullopt; }
+    ReadResult next(SensorFrame& frame) override {
+        frame = {};
+        if (left_-- <= 0) return {};
+        const std::string file = "depth/" + std::to_string(left_) + ".png: ";
+        const std::string reason = left_ % 2 == 0 ? "not a PNG" : "cannot open";
+        ReadResult result{ReadResult::Status::kBroken, file + reason};
+        result.reason = reason;
+        return result;
+    }
+    std::vector<std::string> notes() const override { return {"a note of the source"}; }
+
+  private:
+    CameraInfo camera_;
+    int left_;
 };
 
 class SensorShellTest : public test::ShellTest {
@@ -78,6 +136,110 @@ TEST_F(SensorShellTest, KeepsTheRecordedPace) {
         if (wait_ms > 0) bus_.handle(wait_ms);
     }
     EXPECT_GE(now_us() - start, 80000);
+}
+
+/// Runs a shell to its end as a process does, and counts the camera messages.
+int cameras_of(Bus& bus, std::unique_ptr<FrameSource> source, const SensorShellOptions& options) {
+    SensorShell shell(bus, std::move(source), options);
+    int cameras = 0;
+    bus.subscribe(channels::kCameraInfo, [&](const RawMessage&) { ++cameras; });
+    while (true) {
+        const int wait_ms = shell.poll();
+        if (wait_ms < 0) break;
+        bus.handle(std::min(wait_ms, 200));
+    }
+    bus.drain();
+    return cameras;
+}
+
+std::vector<std::int64_t> stamps_every(std::int64_t step_us, int count) {
+    std::vector<std::int64_t> stamps;
+    for (int i = 0; i < count; ++i) stamps.push_back(1000000 + i * step_us);
+    return stamps;
+}
+
+TEST_F(SensorShellTest, LiveTheCameraIsToldOnceASecondByTheWallClock) {
+    SensorShellOptions options;
+    options.live = true;
+    options.rate_hz = 8;
+    // 20 frames in 2.4 s, whatever the stamps say: 20 ms in all, or 3 minutes.
+    for (const std::int64_t step_us : {1000, 10000000}) {
+        Bus bus("memq://");
+        const int cameras =
+            cameras_of(bus, std::make_unique<StampedSource>(camera(), stamps_every(step_us, 20)), options);
+        EXPECT_GE(cameras, 2) << step_us;
+        EXPECT_LE(cameras, 5) << step_us << ": a loaded machine may be late, but not by the stamps";
+    }
+}
+
+TEST_F(SensorShellTest, LiveTheCameraIsToldWhileTheSourceBlocks) {
+    SensorShellOptions options;
+    options.live = true;
+    options.speed = 0;
+    for (const std::size_t slow : {0u, 2u}) {
+        Bus bus("memq://");
+        const int cameras = cameras_of(
+            bus, std::make_unique<StampedSource>(camera(), stamps_every(1000, 3), slow, 2500), options);
+        EXPECT_GE(cameras, 2) << slow;
+    }
+}
+
+TEST_F(SensorShellTest, NotLiveTheCameraGoesByTheStampsAlone) {
+    SensorShellOptions options = fast("raw", "raw");
+    EXPECT_EQ(
+        cameras_of(bus_, std::make_unique<StampedSource>(camera(), stamps_every(10000, 3), 1, 1200), options),
+        1);
+    Bus bus("memq://");
+    EXPECT_EQ(cameras_of(bus, std::make_unique<StampedSource>(camera(), stamps_every(1000000, 5)), options),
+              5);
+}
+
+TEST_F(SensorShellTest, LiveEveryFrameComesInOrder) {
+    SensorShellOptions options = fast("raw", "raw");
+    options.live = true;
+    SensorShell shell(bus_, std::make_unique<StampedSource>(camera(), stamps_every(1000, 50)), options);
+    FrameDecoder decoder(bus_);
+    std::vector<std::int64_t> utimes;
+    bus_.subscribe(channels::kFrame,
+                   [&](const RawMessage& m) { utimes.push_back(decoder.decode(m)->utime()); });
+    while (shell.poll() >= 0) bus_.drain();
+    EXPECT_EQ(utimes, stamps_every(1000, 50));
+}
+
+TEST_F(SensorShellTest, TheSameFaultIsSaidOnceThenCounted) {
+    std::ostringstream log;
+    const auto before = spdlog::default_logger();
+    spdlog::set_default_logger(
+        std::make_shared<spdlog::logger>("test", std::make_shared<spdlog::sinks::ostream_sink_mt>(log)));
+    SensorShell shell(bus_, std::make_unique<BrokenSource>(camera(), 10000), fast("raw", "raw"));
+    while (shell.poll() >= 0) bus_.drain();
+    spdlog::set_default_logger(before);
+    EXPECT_EQ(shell.broken(), 10000);
+    EXPECT_EQ(shell.status().losses().at("frames that cannot be read"), 10000);
+    const std::string text = log.str();
+    EXPECT_THAT(text, testing::HasSubstr("a note of the source"));
+    EXPECT_THAT(text, testing::HasSubstr("depth/9998.png: not a PNG"));
+    EXPECT_THAT(text, testing::HasSubstr("depth/9999.png: cannot open"));
+    EXPECT_THAT(text, testing::HasSubstr("10000"));
+    EXPECT_LT(std::count(text.begin(), text.end(), '\n'), 10) << text;
+}
+
+TEST_F(SensorShellTest, ASourceWithoutOneGoodFrameEndsInAnError) {
+    SensorShell broken(bus_, std::make_unique<BrokenSource>(camera(), 3), fast("raw", "raw"));
+    broken.finish();  // stopped before the end: nothing to complain of
+    while (broken.poll() >= 0) {
+    }
+    try {
+        broken.finish();
+        FAIL();
+    } catch (const std::runtime_error& error) {
+        EXPECT_THAT(error.what(), testing::AllOf(testing::HasSubstr("none of the 3 frames"),
+                                                 testing::HasSubstr("depth/2.png: not a PNG")));
+    }
+    SensorShell good(bus_, std::make_unique<FakeSource>(camera()), fast("raw", "raw"));
+    while (good.poll() >= 0) {
+    }
+    EXPECT_NO_THROW(good.finish());
 }
 
 TEST_F(SensorShellTest, BadOptionsAreNamed) {

@@ -37,6 +37,10 @@ class SensorInput : public Input {
         if (shell_.colorless() > 0) {
             text += (text.empty() ? "" : ", ") + std::to_string(shell_.colorless()) + " without their colour";
         }
+        if (shell_.ends_missing() > 0) {
+            text += (text.empty() ? "" : ", ") + std::to_string(shell_.ends_missing()) +
+                    " from files that are cut short behind their last pixel";
+        }
         return text;
     }
 

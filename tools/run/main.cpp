@@ -121,7 +121,11 @@ void warn(const std::vector<std::string>& lines) {
 int run(RunOptions options, const nlohmann::ordered_json& about) {
     if (options.seed) options.pipeline.segmentation.seed = options.pipeline.odometry.seed = *options.seed;
     options.pipeline.with_octomap = !options.no_octomap;
-    if (!options.camera.empty()) options.pipeline.camera = read_camera_file(options.camera);
+    if (!options.camera.empty()) {
+        std::vector<std::string> notes;
+        options.pipeline.camera = read_camera_file(options.camera, &notes);
+        for (const std::string& note : notes) spdlog::warn("{}", note);
+    }
     if (!options.poses.empty()) options.pipeline.poses = read_trajectory(options.poses);
     const FrameRange frames = options.frames.empty() ? FrameRange{} : parse_frame_range(options.frames);
     catch_stop_signals();

@@ -22,7 +22,9 @@ constexpr const char* kDescription =
     "--overlay";
 
 int run(const SegmentImagesOptions& options, const std::filesystem::path& camera_file) {
-    const CameraInfo camera = read_camera_file(camera_file);
+    std::vector<std::string> notes;
+    const CameraInfo camera = read_camera_file(camera_file, &notes);
+    for (const std::string& note : notes) std::fprintf(stderr, "%s: %s\n", kProgram, note.c_str());
     const SegmentImagesReport report = segment_images(options, camera);
     for (const std::string& error : report.errors) std::fprintf(stderr, "%s: %s\n", kProgram, error.c_str());
     const std::size_t done = options.images.size() - report.errors.size();
