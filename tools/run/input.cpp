@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "run/input.hpp"
 
+#include <spdlog/spdlog.h>
+
 #include <bot_core/images_t.hpp>
 #include <filesystem>
 #include <planemap/camera_info_t.hpp>
@@ -22,7 +24,9 @@ namespace {
 class SensorInput : public Input {
   public:
     SensorInput(const std::string& name, Bus& bus)
-        : folder_(name), shell_(bus, open_source(name), in_process()) {}
+        : folder_(name), shell_(bus, open_source(name), in_process()) {
+        read_truth();
+    }
 
     bool feed() override { return shell_.poll() >= 0; }
     std::int64_t frames() const override { return shell_.frames() + shell_.broken(); }
@@ -47,10 +51,7 @@ class SensorInput : public Input {
     std::optional<Trajectory> truth() const override {
         if (const auto* simulated = dynamic_cast<const sim::SimulatedSource*>(&shell_.source()))
             return simulated->ground_truth();
-        const std::filesystem::path file = folder_ / "groundtruth.txt";
-        std::error_code ignored;
-        if (!std::filesystem::is_regular_file(file, ignored)) return std::nullopt;
-        return read_trajectory(file);
+        return truth_;
     }
     void write_truth(const std::filesystem::path& folder) const override {
         if (const auto* simulated = dynamic_cast<const sim::SimulatedSource*>(&shell_.source())) {
@@ -66,8 +67,21 @@ class SensorInput : public Input {
         options.color = options.depth = "raw";
         return options;
     }
+    /// At the start: a bad file is said before the run, and does not take its results away.
+    void read_truth() {
+        const std::filesystem::path file = folder_ / "groundtruth.txt";
+        std::error_code ignored;
+        if (!std::filesystem::is_regular_file(file, ignored)) return;
+        try {
+            truth_ = read_trajectory(file);
+        } catch (const std::runtime_error& error) {
+            spdlog::warn("{}; nothing is compared to it", error.what());
+        }
+    }
+
     std::filesystem::path folder_;
     SensorShell shell_;
+    std::optional<Trajectory> truth_;  ///< of a folder
 };
 
 std::uint64_t fingerprint(const LogEvent& event) {
