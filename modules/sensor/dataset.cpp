@@ -150,6 +150,7 @@ ReadResult Dataset::next(SensorFrame& frame) {
         frame = {};
         result.status = ReadResult::Status::kBroken;
         blame(folder_ / listed.depth.file, error, result);
+        result.message += "; the frame is left out";
         return result;
     }
     if (listed.color) {

@@ -35,12 +35,12 @@ SensorShell::SensorShell(Bus& bus, std::unique_ptr<FrameSource> source, SensorSh
 }
 
 /// Logs the first fault of each kind; the status counts them all.
-void SensorShell::complain(const char* what, const ReadResult& result) {
+void SensorShell::complain(const std::string& what, const ReadResult& result) {
     constexpr std::size_t kMostTold = 16;
     status_.lost(what);
     const std::string& reason = result.reason.empty() ? result.message : result.reason;
-    if (told_.size() < kMostTold && told_.insert(reason).second) {
-        spdlog::warn("{} (the same of other files is only counted)", result.message);
+    if (told_.size() < kMostTold && told_.insert(what + reason).second) {
+        spdlog::warn("{} (more of the same is only counted)", result.message);
     }
 }
 

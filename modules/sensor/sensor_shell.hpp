@@ -58,7 +58,7 @@ class SensorShell : public Shell {
     Read read();
     bool next(ReadResult& result);
     void count(const ReadResult& result);
-    void complain(const char* what, const ReadResult& result);
+    void complain(const std::string& what, const ReadResult& result);
 
     Bus& bus_;
     std::shared_ptr<FrameSource> source_;

@@ -8,6 +8,7 @@
 #include "messages/convert.hpp"
 #include "messages/decode.hpp"
 #include "messages/log.hpp"
+#include "sensor/png.hpp"
 #include "tools/programs.hpp"
 
 namespace planemap {
@@ -234,6 +235,66 @@ TEST_F(RunTest, DepthThatIsAllZeroIsSaid) {
 }
 
 /// Real data, physical bounds.
+/// A wall with a box before it, under colour that can be followed, eight times; lists as a hostile editor
+/// leaves them, a depth image that is not there, one cut short behind its pixels, and a truth that is none.
+void write_odd_folder(const std::filesystem::path& folder) {
+    constexpr int kWidth = 160, kHeight = 120;
+    std::filesystem::create_directories(folder / "my scan");
+    DepthImage depth(kWidth, kHeight, 2000);
+    RgbImage color(kWidth, kHeight);
+    std::uint32_t random = 1;
+    for (int v = 0; v < kHeight; ++v) {
+        for (int u = 0; u < kWidth; ++u) {
+            if (u > 50 && u < 90 && v > 40) depth(u, v) = 1500;
+            random = random * 1664525 + 1013904223;
+            const auto value = static_cast<std::uint8_t>(random >> 24);
+            color(u, v) = {value, value, value};
+        }
+    }
+    std::string depths = "\xef\xbb\xbf# depth\r\n", colors;
+    for (int i = 0; i < 8; ++i) {
+        const std::string n = std::to_string(i), ns = std::to_string(1403636579763555584 + i * 100000000LL);
+        if (i != 3) write_depth_png(folder / "my scan" / ("depth " + n + ".png"), depth);
+        write_color_png(folder / "my scan" / ("rgb " + n + ".png"), color);
+        depths += ns + "\tmy scan/depth " + n + ".png \r\n";
+        colors += ns + " my scan/rgb " + n + ".png\n";
+    }
+    const auto cut = folder / "my scan/depth 5.png";
+    std::filesystem::resize_file(cut, std::filesystem::file_size(cut) - 12);
+    write_file(folder / "depth.txt", depths);
+    write_file(folder / "rgb.txt", colors);
+    write_file(folder / "groundtruth.txt", "what\n");
+    write_file(folder / "camera.json",
+               R"({"depth_camera": {"width": 160, "height": 120, "fx": 130, "fy": 130, "cx": 80, "cy": 60},
+                   "depth_units_per_metre": 1000, "sensor": "kinect1"})");
+}
+
+TEST_F(RunTest, AnOddFolderIsMappedAndWhatIsWrongInItIsSaid) {
+    write_odd_folder(folder_ / "odd");
+    const Result result = run("planemap-run", path("odd") + " --no-octomap --quiet --output " + path("out"));
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(report("out").at("frames"), 8);
+    EXPECT_EQ(report("out").at("tracked"), 7);
+    EXPECT_EQ(read_trajectory(folder_ / "out/trajectory.txt").at(0).utime, 1403636579763556);
+    for (const char* said :
+         {"are read as nanoseconds", "groundtruth.txt:1: expected", "depth 3.png: cannot open",
+          "1 frames could not be read", "1 from files that are cut short behind their last"}) {
+        EXPECT_NE(result.err.find(said), std::string::npos) << said << "\n" << result.err;
+    }
+    EXPECT_LT(std::count(result.err.begin(), result.err.end(), '\n'), 10) << result.err;
+}
+
+TEST_F(RunTest, TheSensorSaysWhatItCannotRead) {
+    write_file(folder_ / "x.lcmlog", std::string("\xed\xa1\xda\x01", 4) + std::string(24, '\0'));
+    expect_error("planemap-sensor", path("x.lcmlog") + " -l memq://", "not a folder but an LCM log");
+    expect_error("planemap-sensor", path("none") + " -l memq://", "no such folder");
+    write_odd_folder(folder_ / "odd");
+    std::filesystem::remove_all(folder_ / "odd/my scan");
+    const Result result = run("planemap-sensor", path("odd") + " --speed 0 -l memq://");
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_NE(result.err.find("none of the 8 frames could be read"), std::string::npos) << result.err;
+}
+
 TEST_F(RunTest, RedkitchenIsTrackedAndItsMapIsSmall) {
     PLANEMAP_NEEDS_DATA("redkitchen");
     const std::string input = test::data_folder("redkitchen");

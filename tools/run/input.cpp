@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "run/input.hpp"
 
+#include <spdlog/spdlog.h>
+
 #include <bot_core/images_t.hpp>
 #include <chrono>
 #include <filesystem>
@@ -23,7 +25,9 @@ namespace {
 class SensorInput : public Input {
   public:
     SensorInput(const std::string& name, Bus& bus, const FrameRange& frames)
-        : folder_(name), shell_(bus, open_source(name, {.frames = frames}), in_process()) {}
+        : folder_(name), shell_(bus, open_source(name, {.frames = frames}), in_process()) {
+        read_truth();
+    }
 
     std::int64_t frames() const override { return shell_.frames() + shell_.broken(); }
     std::optional<double> progress() const override {
@@ -47,10 +51,7 @@ class SensorInput : public Input {
     std::optional<Trajectory> truth() const override {
         if (const auto* simulated = dynamic_cast<const sim::SimulatedSource*>(&shell_.source()))
             return simulated->ground_truth();
-        const std::filesystem::path file = folder_ / "groundtruth.txt";
-        std::error_code ignored;
-        if (!std::filesystem::is_regular_file(file, ignored)) return std::nullopt;
-        return read_trajectory(file);
+        return truth_;
     }
     std::vector<Result> truth_results() const override {
         const auto* simulated = dynamic_cast<const sim::SimulatedSource*>(&shell_.source());
@@ -69,8 +70,21 @@ class SensorInput : public Input {
         options.color = options.depth = "raw";
         return options;
     }
+    /// At the start: a bad file is said before the run, and does not take its results away.
+    void read_truth() {
+        const std::filesystem::path file = folder_ / "groundtruth.txt";
+        std::error_code ignored;
+        if (!std::filesystem::is_regular_file(file, ignored)) return;
+        try {
+            truth_ = read_trajectory(file);
+        } catch (const std::runtime_error& error) {
+            spdlog::warn("{}; nothing is compared to it", error.what());
+        }
+    }
+
     std::filesystem::path folder_;
     SensorShell shell_;
+    std::optional<Trajectory> truth_;  ///< of a folder
 };
 
 std::uint64_t fingerprint(const LogEvent& event) {
