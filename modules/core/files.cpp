@@ -18,6 +18,17 @@ namespace {
     throw std::runtime_error(file.string() + ": cannot " + doing + ": " + std::strerror(error));
 }
 
+/// Writes and closes; with `sync`, waits until the bytes are on the disk. Returns errno's value, 0 if all is
+/// well.
+int write_through(const std::filesystem::path& file, std::string_view bytes, bool sync) {
+    std::FILE* out = std::fopen(file.c_str(), "wb");
+    if (out == nullptr) return errno;
+    bool written = std::fwrite(bytes.data(), 1, bytes.size(), out) == bytes.size() && std::fflush(out) == 0;
+    while (written && sync && ::fsync(::fileno(out)) != 0) written = errno == EINTR;
+    const int error = written ? 0 : errno;
+    return std::fclose(out) == 0 || error != 0 ? error : errno;
+}
+
 }  // namespace
 
 std::string read_file(const std::filesystem::path& file, std::size_t max_bytes) {
@@ -44,19 +55,26 @@ std::string read_file(const std::filesystem::path& file, std::size_t max_bytes) 
 }
 
 void write_file(const std::filesystem::path& file, std::string_view bytes) {
+    std::error_code status;
+    const std::filesystem::file_type type = std::filesystem::status(file, status).type();
+    using Type = std::filesystem::file_type;
+    if (type == Type::character || type == Type::fifo || type == Type::socket || type == Type::block) {
+        // /dev/stdout or a pipe: there is nothing to replace, and it must stay what it is.
+        const int error = write_through(file, bytes, false);
+        if (error != 0) fail(file, "write", error);
+        return;
+    }
     const std::filesystem::path beside = file.string() + ".tmp" + std::to_string(::getpid());
-    std::FILE* out = std::fopen(beside.c_str(), "wb");
-    if (out == nullptr) fail(file, "write", errno);
-    const bool written = std::fwrite(bytes.data(), 1, bytes.size(), out) == bytes.size() &&
-                         std::fflush(out) == 0 && ::fsync(::fileno(out)) == 0;
-    const int error = errno;
-    std::fclose(out);
-    std::error_code renamed;
-    if (written) std::filesystem::rename(beside, file, renamed);
-    if (!written || renamed) {
+    int error = write_through(beside, bytes, true);
+    if (error == 0) {
+        std::error_code renamed;
+        std::filesystem::rename(beside, file, renamed);
+        error = renamed.value();
+    }
+    if (error != 0) {
         std::error_code ignored;
         std::filesystem::remove(beside, ignored);
-        fail(file, "write", written ? renamed.value() : error);
+        fail(file, "write", error);
     }
 }
 

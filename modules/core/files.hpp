@@ -10,7 +10,8 @@ namespace planemap {
 /// The whole file as bytes. Throws std::runtime_error naming file and reason; also for a file over max_bytes.
 std::string read_file(const std::filesystem::path& file, std::size_t max_bytes = std::size_t{1} << 32);
 
-/// Writes beside the target and renames, so a reader or a kill never leaves half a file.
+/// Writes beside the target and renames, so a reader or a kill never leaves half a file. A device or pipe is
+/// written to as it is.
 /// Throws std::runtime_error naming file and reason.
 void write_file(const std::filesystem::path& file, std::string_view bytes);
 

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/files.hpp"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <fstream>
 #include <stdexcept>
@@ -61,6 +63,21 @@ TEST(Files, APipeIsNotWaitedFor) {
     EXPECT_THAT(error_of([&] { read_file("/dev/zero"); }), HasSubstr("not a regular file"));
     std::filesystem::create_symlink(folder / "loop", folder / "loop");
     EXPECT_THAT(error_of([&] { read_file(folder / "loop"); }), HasSubstr("loop: cannot open"));
+}
+
+TEST(Files, ADeviceIsWrittenToAndStaysWhatItIs) {
+    const TemporaryFolder folder;
+    const std::filesystem::path pipe = folder / "pipe";
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
+    write_file(pipe, "hello");
+    char bytes[8] = {};
+    EXPECT_EQ(::read(reader, bytes, sizeof(bytes)), 5);
+    EXPECT_STREQ(bytes, "hello");
+    ::close(reader);
+    EXPECT_TRUE(std::filesystem::is_fifo(pipe));
+    EXPECT_THAT(error_of([] { write_file("/dev/full", "x"); }), HasSubstr("No space"));
+    EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
 }
 
 TEST(Files, RefusesMoreThanTheLimit) {

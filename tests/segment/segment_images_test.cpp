@@ -107,6 +107,21 @@ TEST_F(SegmentImages, InputsAreNotOverwritten) {
     EXPECT_EQ(read_file(image), encode_depth_png(small_depth()));
 }
 
+TEST_F(SegmentImages, AnEarlierRunsResultsAreReplacedAndOthersImagesAreNot) {
+    options.overlay = true;
+    segment({image});
+    options.overlay = false;
+    folder.write("out/b.png", "a picture of something else");
+    folder.write("out/c.json", "{}");
+    const auto second = folder.write("b.png", encode_depth_png(small_depth()));
+    EXPECT_THAT(segment({image, second}).errors,
+                ElementsAre(AllOf(HasSubstr("b.png"), HasSubstr("--output"))));
+    EXPECT_FALSE(std::filesystem::exists(options.output / "a.overlay.png")) << "of the earlier run";
+    EXPECT_EQ(read_file(options.output / "b.png"), "a picture of something else");
+    EXPECT_TRUE(std::filesystem::exists(options.output / "c.json")) << "of an image that is not done now";
+    EXPECT_FALSE(std::filesystem::exists(options.output / ".partial"));
+}
+
 TEST_F(SegmentImages, BadOptionsAreNamed) {
     options.repeat = -1;
     EXPECT_THAT(error_of([&] { segment({}); }), AllOf(HasSubstr("repeat"), HasSubstr("images")));

@@ -12,8 +12,8 @@
 #include "benchmark/build_info.hpp"
 #include "benchmark/choices.hpp"
 #include "benchmark/data_folder.hpp"
-#include "core/files.hpp"
 #include "messages/process.hpp"
+#include "results/output_file.hpp"
 
 namespace planemap::bench_map {
 namespace {
@@ -144,7 +144,8 @@ std::vector<Row> rows_of(const Arguments& arguments, const std::vector<PosesInfo
 
 /// Runs the sequences; prints and keeps each row as it comes.
 nlohmann::ordered_json print_rows(const Arguments& arguments, const std::vector<std::string>& sequences,
-                                  std::FILE* out) {
+                                  OutputFile& output) {
+    std::FILE* out = output.for_people();
     const std::vector<PosesInfo> poses = chosen("poses", arguments.poses, known_poses());
     nlohmann::ordered_json json = nlohmann::ordered_json::array();
     std::vector<Row> all;
@@ -165,7 +166,7 @@ nlohmann::ordered_json print_rows(const Arguments& arguments, const std::vector<
         }
         std::fflush(out);
         // After each sequence: what was measured is kept if a later one fails.
-        if (!arguments.json.empty() && arguments.json != "-") write_file(arguments.json, json.dump(1) + "\n");
+        output.keep(json.dump(1) + "\n");
     }
     std::fprintf(out, "\n%s\n%s", goals(all).c_str(), remarks.c_str());
     return json;
@@ -191,16 +192,13 @@ nlohmann::ordered_json print_growth(const Arguments& arguments, const std::vecto
 int run(const Arguments& arguments) {
     if (arguments.frames < 0)
         throw std::invalid_argument("frames: " + std::to_string(arguments.frames) + ", must be at least 0");
-    const bool json_to_stdout = arguments.json == "-",
-               json_to_file = !arguments.json.empty() && !json_to_stdout;
     const std::vector<std::string> sequences = parse_sequences(arguments.sequences);
-    std::FILE* out = json_to_stdout ? stderr : stdout;
-    if (json_to_file) write_file(arguments.json, "[]\n");  // an error now, not in an hour
+    OutputFile output(arguments.json);
+    std::FILE* out = output.for_people();
     std::fputs(build_info("none: the truth is exact").c_str(), out);
     const nlohmann::ordered_json json =
-        arguments.growth ? print_growth(arguments, sequences, out) : print_rows(arguments, sequences, out);
-    if (json_to_file) write_file(arguments.json, json.dump(1) + "\n");
-    if (json_to_stdout) std::fputs((json.dump(1) + "\n").c_str(), stdout);
+        arguments.growth ? print_growth(arguments, sequences, out) : print_rows(arguments, sequences, output);
+    output.finish(json.dump(1) + "\n");
     return 0;
 }
 

@@ -13,6 +13,7 @@
 #include "benchmark/data_folder.hpp"
 #include "core/files.hpp"
 #include "messages/process.hpp"
+#include "results/output_file.hpp"
 
 namespace planemap::bench_odometry {
 namespace {
@@ -103,8 +104,9 @@ void write_plot(const std::filesystem::path& folder, const Sequence& sequence, c
 
 /// Runs every method on one sequence; prints and keeps each row as it comes.
 void run_sequence(const Benchmark& benchmark, const SequenceInfo& info,
-                  const std::vector<MethodInfo>& methods, const std::filesystem::path& plots, std::FILE* out,
-                  nlohmann::ordered_json& json) {
+                  const std::vector<MethodInfo>& methods, const std::filesystem::path& plots,
+                  OutputFile& output, nlohmann::ordered_json& json) {
+    std::FILE* out = output.for_people();
     std::string missing;
     const std::optional<Sequence> sequence = benchmark.open(info, missing);
     if (!sequence) {
@@ -120,6 +122,7 @@ void run_sequence(const Benchmark& benchmark, const SequenceInfo& info,
         json.push_back(to_json(rows.back()));
     }
     std::fflush(out);
+    output.keep(json.dump(1) + "\n");  // what was measured is kept if a later one fails
     if (!plots.empty() && sequence->truth) write_plot(plots, *sequence, rows);
 }
 
@@ -132,26 +135,21 @@ std::vector<MethodInfo> methods_of(const Arguments& arguments) {
 }
 
 int run(const Arguments& arguments) {
-    const bool json_to_stdout = arguments.json == "-",
-               json_to_file = !arguments.json.empty() && !json_to_stdout;
     std::vector<SequenceInfo> sequences = parse_sequences(arguments.sequences);
     const std::vector<MethodInfo> methods = methods_of(arguments);
     const Benchmark benchmark(arguments.benchmark);
-    std::FILE* out = json_to_stdout ? stderr : stdout;
+    OutputFile output(arguments.json);
+    if (!arguments.plots.empty()) ResultFolder(arguments.plots, {});  // an error now, not in an hour
+    std::FILE* out = output.for_people();
     std::fputs(build_info("OpenCV " CV_VERSION " as Debian builds it").c_str(), out);
     nlohmann::ordered_json json = nlohmann::ordered_json::array();
-    if (json_to_file) write_file(arguments.json, "[]\n");  // an error now, not in an hour
     if (arguments.table2) {
         json = print_table2(benchmark, methods, out);
         sequences.clear();
     }
-    for (const SequenceInfo& sequence : sequences) {
-        run_sequence(benchmark, sequence, methods, arguments.plots, out, json);
-        // After each sequence: what was measured is kept if a later one fails.
-        if (json_to_file) write_file(arguments.json, json.dump(1) + "\n");
-    }
-    if (json_to_file) write_file(arguments.json, json.dump(1) + "\n");
-    if (json_to_stdout) std::fputs((json.dump(1) + "\n").c_str(), stdout);
+    for (const SequenceInfo& sequence : sequences)
+        run_sequence(benchmark, sequence, methods, arguments.plots, output, json);
+    output.finish(json.dump(1) + "\n");
     return 0;
 }
 

@@ -10,8 +10,8 @@
 #include "benchmark/build_info.hpp"
 #include "benchmark/choices.hpp"
 #include "benchmark/data_folder.hpp"
-#include "core/files.hpp"
 #include "messages/process.hpp"
+#include "results/output_file.hpp"
 
 namespace planemap::bench {
 namespace {
@@ -74,7 +74,8 @@ void add_flags(Flags& flags, Arguments& arguments) {
     flags.add("q,quiet", options.quiet, "no progress on stderr");
 }
 
-nlohmann::ordered_json run_sequences(const Arguments& arguments, std::FILE* out) {
+nlohmann::ordered_json run_sequences(const Arguments& arguments, OutputFile& output) {
+    std::FILE* out = output.for_people();
     const std::vector<SequenceInfo> sequences = parse_sequences(arguments.sequences);
     const std::vector<MethodName> methods = parse_methods(arguments.methods);
     nlohmann::ordered_json json = nlohmann::ordered_json::array();
@@ -93,6 +94,7 @@ nlohmann::ordered_json run_sequences(const Arguments& arguments, std::FILE* out)
             json.push_back(to_json(row));
         }
         std::fflush(out);
+        output.keep(json.dump(1) + "\n");  // what was measured is kept if a later one fails
     }
     return json;
 }
@@ -108,10 +110,10 @@ std::vector<MethodName> table1_methods(const std::string& list, bool is_default)
 }
 
 int run(const Arguments& arguments) {
-    const bool json_to_stdout = arguments.json == "-",
-               json_to_file = !arguments.json.empty() && !json_to_stdout;
-    if (json_to_file) write_file(arguments.json, "[]\n");  // an error now, not in two minutes
-    std::FILE* out = json_to_stdout ? stderr : stdout;
+    OutputFile output(arguments.json);
+    const std::filesystem::path& overlays = arguments.benchmark.overlays;
+    if (!overlays.empty()) ResultFolder(overlays, {});  // an error now, not in two minutes
+    std::FILE* out = output.for_people();
     const std::string peers = "PCL " PCL_VERSION_PRETTY
                               " compiled with these flags (PCL_NO_PRECOMPILE); ransac-debian: Debian's build "
                               "of it; OpenCV " CV_VERSION " as Debian builds it";
@@ -119,10 +121,8 @@ int run(const Arguments& arguments) {
     const bool all_methods = arguments.methods == planemap::names_of(known_methods());
     const nlohmann::ordered_json json =
         arguments.table1 ? print_table1(table1_methods(arguments.methods, all_methods), out)
-                         : run_sequences(arguments, out);
-    const std::string text = json.dump(1) + "\n";
-    if (json_to_stdout) std::fputs(text.c_str(), stdout);
-    if (json_to_file) write_file(arguments.json, text);
+                         : run_sequences(arguments, output);
+    output.finish(json.dump(1) + "\n");
     return 0;
 }
 

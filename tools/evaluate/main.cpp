@@ -2,7 +2,6 @@
 // planemap-evaluate: ATE and RPE of a trajectory against the truth.
 #include <cstdio>
 #include <filesystem>
-#include <iostream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -12,6 +11,7 @@
 #include "core/trajectory_file.hpp"
 #include "evaluate/evaluation.hpp"
 #include "messages/process.hpp"
+#include "results/standard_output.hpp"
 
 namespace planemap {
 namespace {
@@ -195,7 +195,7 @@ void run(const Arguments& arguments) {
         json["delta_unit"] = arguments.delta_unit;
     }
     if (arguments.json_file == "-") {
-        std::cout << json.dump(2) << std::endl;
+        print(json.dump(2) + "\n");
     } else if (!arguments.json_file.empty()) {
         write_file(arguments.json_file, json.dump(2) + "\n");
     }

@@ -14,6 +14,7 @@
 #include <regex>
 #include <stdexcept>
 #include <system_error>
+#include <tuple>
 #include <utility>
 
 #include "core/files.hpp"
@@ -100,8 +101,12 @@ ResultFolder::ResultFolder(fs::path folder, std::vector<std::string> names, std:
     std::signal(SIGXFSZ, SIG_IGN);
     for (const std::string& name : names_) {
         std::error_code error;
-        if (fs::is_directory(folder_ / name, error))
-            throw std::runtime_error((folder_ / name).string() + ": is a folder, where a result is to go");
+        const fs::file_status there = fs::status(folder_ / name, error);
+        if (fs::exists(there) && !fs::is_regular_file(there)) {
+            throw std::runtime_error((folder_ / name).string() + ": is " +
+                                     (fs::is_directory(there) ? "a folder" : "no file") +
+                                     ", where a result is to go");
+        }
     }
     if (!lock()) {
         throw std::runtime_error(folder_.string() +
@@ -259,32 +264,43 @@ void ResultFolder::move_into_place() {
     sync_folder(folder_);
 }
 
+/// The folders of set_aside(), the oldest first: by date, then by the number that tells those of one second.
+std::vector<ResultFolder::Aside> ResultFolder::asides() const {
+    static const std::regex kName(R"((\d{8}-\d{6})-(\d{1,9}))");
+    std::vector<Aside> found;
+    for (const fs::path& entry : entries_of(folder_)) {
+        const std::string name = entry.filename().string();
+        if (!name.starts_with(aside_stem())) continue;
+        const std::string rest = name.substr(aside_stem().size());
+        std::smatch parts;
+        if (std::regex_match(rest, parts, kName)) found.push_back({parts[1], std::stoi(parts[2]), entry});
+    }
+    std::sort(found.begin(), found.end(), [](const Aside& a, const Aside& b) {
+        return std::tie(a.date, a.number) < std::tie(b.date, b.number);
+    });
+    return found;
+}
+
+std::string ResultFolder::aside_stem() const {
+    return (workspace_.starts_with('.') ? workspace_.substr(1) : workspace_) + "-";
+}
+
 fs::path ResultFolder::set_aside() {
-    const std::string stem = (workspace_.starts_with('.') ? workspace_.substr(1) : workspace_) + "-";
-    const std::string name = stem + date_of(workspace());
-    fs::path kept = folder_ / name;
-    for (int i = 2; is_there(kept); ++i) kept = folder_ / (name + "-" + std::to_string(i));
+    const std::string date = date_of(workspace());
+    int number = 1;
+    for (const Aside& aside : asides())
+        if (aside.date == date) number = aside.number + 1;
+    const fs::path kept = folder_ / (aside_stem() + date + "-" + std::to_string(number));
     remove_scraps();
     rename_or_throw(workspace(), kept);
     made_.clear();
-    drop_oldest();
-    return kept;
-}
-
-void ResultFolder::drop_oldest() {
-    const std::string stem = (workspace_.starts_with('.') ? workspace_.substr(1) : workspace_) + "-";
-    static const std::regex kDate(R"(\d{8}-\d{6}(-\d+)?)");
-    std::vector<fs::path> aside;
-    for (const fs::path& entry : entries_of(folder_)) {
-        const std::string name = entry.filename().string();
-        if (name.starts_with(stem) && std::regex_match(name.substr(stem.size()), kDate))
-            aside.push_back(entry);
-    }
-    for (std::size_t i = 0; i + kKeptAside < aside.size(); ++i) {
-        remove_or_throw(aside[i]);
-        notes_.push_back(aside[i].string() + ": removed, the newest " + std::to_string(kKeptAside) +
+    const std::vector<Aside> all = asides();
+    for (std::size_t i = 0; i + kKeptAside < all.size(); ++i) {
+        remove_or_throw(all[i].path);
+        notes_.push_back(all[i].path.string() + ": removed, the newest " + std::to_string(kKeptAside) +
                          " of its kind are kept");
     }
+    return kept;
 }
 
 void ResultFolder::discard() {

@@ -19,9 +19,9 @@ struct Result {
 /// Results are made in a workspace inside the folder (FOLDER/.partial) and moved to their names together when
 /// they are all there; until then the earlier ones are untouched. A kill while they are moved is made good by
 /// the next ResultFolder there. What a run that did not end left in its workspace is set aside as
-/// FOLDER/partial-DATE (UTC, when it was last written), so that nothing is lost; of these the newest five are
-/// kept, so that they do not pile up. One process at a time works with a workspace: the lock goes with the
-/// process, however that ends. Files under other names are never touched.
+/// FOLDER/partial-DATE-N (UTC, when it was last written), so that nothing is lost; of these the newest five
+/// are kept, so that they do not pile up. One process at a time works with a workspace: the lock goes with
+/// the process, however that ends. Files under other names are never touched.
 class ResultFolder {
   public:
     enum class Leftovers { kSetAside, kRemove };
@@ -61,6 +61,11 @@ class ResultFolder {
     void discard();
 
   private:
+    struct Aside {
+        std::string date;
+        int number;
+        std::filesystem::path path;
+    };
     std::filesystem::path workspace() const { return folder_ / workspace_; }
     std::filesystem::path moving() const { return folder_ / (workspace_ + "-whole"); }
     std::filesystem::path lock_file() const { return folder_ / (workspace_ + ".lock"); }
@@ -72,7 +77,8 @@ class ResultFolder {
     void try_room() const;
     void remove_scraps() const;
     void move_into_place();
-    void drop_oldest();
+    std::string aside_stem() const;
+    std::vector<Aside> asides() const;
 
     std::filesystem::path folder_;
     std::vector<std::string> names_;

@@ -26,6 +26,7 @@ int run(const SegmentImagesOptions& options, const std::filesystem::path& camera
     const CameraInfo camera = read_camera_file(camera_file, &notes);
     for (const std::string& note : notes) std::fprintf(stderr, "%s: %s\n", kProgram, note.c_str());
     const SegmentImagesReport report = segment_images(options, camera);
+    for (const std::string& note : report.notes) std::fprintf(stderr, "%s: %s\n", kProgram, note.c_str());
     for (const std::string& error : report.errors) std::fprintf(stderr, "%s: %s\n", kProgram, error.c_str());
     const std::size_t done = options.images.size() - report.errors.size();
     std::printf("%s: %zu of %zu images, %zu regions\n", options.output.c_str(), done, options.images.size(),

@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "core/files.hpp"
+#include "results/result_folder.hpp"
 #include "segment/overlay.hpp"
 #include "segment/region_json.hpp"
 #include "segment/thread_time.hpp"
@@ -78,26 +79,44 @@ DepthImage read_depth(const std::filesystem::path& file, const CameraInfo& camer
     }
 }
 
-/// The files of one image's results.
-struct Results {
-    std::filesystem::path labels, json, overlay;
+/// The names of one image's results.
+struct ResultNames {
+    std::string labels, json, overlay;
 
-    Results(const std::filesystem::path& folder, const std::filesystem::path& image) {
-        const std::filesystem::path stem = folder / image.stem();
-        labels = stem.string() + ".png";
-        json = stem.string() + ".json";
-        overlay = stem.string() + ".overlay.png";
+    explicit ResultNames(const std::filesystem::path& image) {
+        const std::string stem = image.stem().string();
+        labels = stem + ".png";
+        json = stem + ".json";
+        overlay = stem + ".overlay.png";
     }
+    std::vector<std::string> all() const { return {labels, overlay, json}; }
 };
 
-void refuse_to_overwrite(const Results& results, const std::vector<std::filesystem::path>& inputs) {
-    for (const std::filesystem::path& input : inputs) {
-        for (const std::filesystem::path& file : {results.labels, results.overlay}) {
-            std::error_code no_file;
+/// Throws if an image of the results would take the place of an input, or of one that is not of an earlier
+/// run: then its JSON would be there.
+void refuse_to_overwrite(const std::filesystem::path& folder, const ResultNames& names,
+                         const std::vector<std::filesystem::path>& inputs) {
+    std::error_code no_file;
+    for (const std::string& name : {names.labels, names.overlay}) {
+        const std::filesystem::path file = folder / name;
+        for (const std::filesystem::path& input : inputs) {
             if (std::filesystem::equivalent(file, input, no_file))
                 throw std::runtime_error(file.string() + ": is an input; give another --output");
         }
+        if (std::filesystem::exists(file, no_file) &&
+            !std::filesystem::exists(folder / names.json, no_file)) {
+            throw std::runtime_error(file.string() + ": is there, and not of an earlier run (there is no " +
+                                     names.json + "); give another --output");
+        }
     }
+}
+
+/// All that is written for all images.
+std::vector<std::string> names_of(const std::vector<std::filesystem::path>& images) {
+    std::vector<std::string> names;
+    for (const std::filesystem::path& image : images)
+        for (const std::string& name : ResultNames(image).all()) names.push_back(name);
+    return names;
 }
 
 }  // namespace
@@ -120,29 +139,30 @@ void SegmentImagesOptions::validate() const {
 SegmentImagesReport segment_images(const SegmentImagesOptions& options, const CameraInfo& camera) {
     options.validate();
     camera.validate();
-    std::error_code error;
-    std::filesystem::create_directories(options.output, error);
-    if (error) throw std::runtime_error(options.output.string() + ": cannot be made: " + error.message());
-
+    // What a run that did not end left is a part of one image's results, which can be made again.
+    ResultFolder folder(options.output, names_of(options.images), ".partial",
+                        ResultFolder::Leftovers::kRemove);
     const std::unique_ptr<Segmenter> segmenter = make_segmenter(options.segmentation);
     SegmentImagesReport report;
     Progress progress(options.images.size(), options.quiet);
     Segmentation segmentation;
     const auto segment_one = [&](const std::filesystem::path& image) {
-        const Results results(options.output, image);
-        refuse_to_overwrite(results, options.images);
+        const ResultNames names(image);
+        refuse_to_overwrite(options.output, names, options.images);
         const DepthImage depth = read_depth(image, camera);
         segmenter->segment(depth, camera, segmentation);
-        nlohmann::ordered_json json{{"image", image.string()},
-                                    {"width", depth.width},
-                                    {"height", depth.height},
-                                    {"method", options.segmentation.method},
-                                    {"labels", results.labels.filename().string()},
-                                    {"regions", regions_json(segmentation)}};
+        nlohmann::ordered_json json{{"image", image.string()}, {"width", depth.width},
+                                    {"height", depth.height},  {"method", options.segmentation.method},
+                                    {"labels", names.labels},  {"regions", regions_json(segmentation)}};
         if (options.repeat > 0) json["time_ms"] = measure(*segmenter, depth, camera, options.repeat);
-        write_depth_png(results.labels, segmentation.labels);
-        if (options.overlay) write_color_png(results.overlay, draw_overlay(depth, camera, segmentation));
-        write_file(results.json, json.dump(1) + "\n");
+        folder.make({names.labels, [&](const auto& file) { write_depth_png(file, segmentation.labels); }});
+        if (options.overlay) {
+            folder.make({names.overlay, [&](const auto& file) {
+                             write_color_png(file, draw_overlay(depth, camera, segmentation));
+                         }});
+        }
+        folder.make({names.json, [&](const auto& file) { write_file(file, json.dump(1) + "\n"); }});
+        folder.replace(names.all());
         report.regions += segmentation.regions.size();
     };
     for (std::size_t i = 0; i < options.images.size(); ++i) {
@@ -151,8 +171,10 @@ SegmentImagesReport segment_images(const SegmentImagesOptions& options, const Ca
             segment_one(options.images[i]);
         } catch (const std::exception& failure) {
             report.errors.emplace_back(failure.what());
+            folder.discard();
         }
     }
+    report.notes = folder.take_notes();
     return report;
 }
 

@@ -27,13 +27,15 @@ struct SegmentImagesOptions {
 struct SegmentImagesReport {
     std::size_t regions = 0;          ///< in all images together
     std::vector<std::string> errors;  ///< one line for each image that could not be done: file and reason
+    std::vector<std::string> notes;   ///< what else the user should know of the folder, a line each
 };
 
 /// Writes for each image output/STEM.png (labels, 16-bit greyscale; 0: none, i: region i) and
-/// output/STEM.json (image, width, height, method, labels, time_ms, and regions: see regions_json()). An
-/// image that cannot be read, has not the camera's size, or whose results cannot be written, or would
-/// overwrite an input, costs itself only. Throws std::invalid_argument for bad options or a bad camera,
-/// std::runtime_error if the folder cannot be made.
+/// output/STEM.json (image, width, height, method, labels, time_ms, and regions: see regions_json()), both at
+/// once; of an earlier run, that image's results are replaced. An image that cannot be read, has not the
+/// camera's size, or whose results cannot be written, or would overwrite an input or an image of another
+/// kind, costs itself only. Throws std::invalid_argument for bad options or a bad camera, std::runtime_error
+/// if the folder cannot be made or written to, or another run writes there.
 SegmentImagesReport segment_images(const SegmentImagesOptions& options, const CameraInfo& camera);
 
 /// Takes the arguments that are neither flags nor values of flags out of a command line: the files. Every
