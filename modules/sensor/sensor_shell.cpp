@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sensor/sensor_shell.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -39,18 +37,25 @@ bool SensorShell::read() {
         if (result.status == ReadResult::Status::kFrame) {
             if (!result.message.empty()) {
                 ++colorless_;
-                spdlog::warn("colour left out: {}", result.message);
+                bus_.complaints().add("colour left out: " + result.message);
             }
             return true;
         }
         ++broken_;
         status_.dropped();
         status_.set_text(result.message);
-        spdlog::warn("frame skipped: {}", result.message);
+        bus_.complaints().add("frame skipped: " + result.message);
     }
 }
 
 int SensorShell::poll() {
+    const std::int64_t now = now_us();
+    if (!bus_.connected()) {  // a recording waits for those who listen
+        if (disconnected_us_ == 0) disconnected_us_ = now;
+        return 100;
+    }
+    if (disconnected_us_ != 0 && start_wall_us_ != 0) start_wall_us_ += now - disconnected_us_;
+    disconnected_us_ = 0;
     if (!pending_) {
         if (!read()) return -1;
         pending_ = true;

@@ -27,7 +27,8 @@ class SensorShell : public Shell {
     SensorShell(Bus& bus, std::unique_ptr<FrameSource> source, SensorShellOptions options);
 
     ModuleStatus& status() override { return status_; }
-    /// Publishes the next frame if it is due; negative at the end of the source.
+    /// Publishes the next frame if it is due; negative at the end of the source. Without a connection nothing
+    /// is read: a recording goes on when there is one.
     int poll() override;
 
     const FrameSource& source() const { return *source_; }
@@ -50,6 +51,7 @@ class SensorShell : public Shell {
     SensorFrame frame_;
     bool pending_ = false;
     std::int64_t frames_ = 0, broken_ = 0, colorless_ = 0;
+    std::int64_t disconnected_us_ = 0;  ///< since when the bus has no connection; 0: it has
     std::int64_t start_wall_us_ = 0, start_utime_ = 0, last_utime_ = 0, last_camera_utime_ = 0;
     std::int32_t camera_seq_ = 0;
 };

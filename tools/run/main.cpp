@@ -89,7 +89,8 @@ int run(RunOptions options) {
         spdlog::warn("{}: no pose within 0.1 s of {} keyframes, which are not in the map",
                      options.poses.string(), given->missing());
     }
-    if (!input->complaints().empty()) spdlog::warn("{}", input->complaints());
+    for (const std::string& line : input->complaints()) spdlog::warn("{}", line);
+    bus.complaints().log_totals();
 
     const nlohmann::ordered_json report =
         write_outputs(options.output, options.input, *input, pipeline, clock);
@@ -98,6 +99,8 @@ int run(RunOptions options) {
         "\nIn %s: trajectory.txt planes.json planes.ply planes.obj planes.mtl planes.glb "
         "floor_plan.geojson plane_map.lcmlog%s map.svg overhead.svg report.json report.md\n",
         options.output.c_str(), pipeline.octomap() != nullptr ? " octomap.bt" : "");
+    if (!input->failure().empty())
+        throw std::runtime_error(input->failure() + " (what was mapped before it is written)");
     if (pipeline.estimates().empty())
         throw std::runtime_error(options.input + ": no frame of it could be used");
     if (report.at("tracked") == 0) {

@@ -147,10 +147,14 @@ Json write_outputs(const std::filesystem::path& folder, const std::string& input
     const double octomap_s = report["stages_ms"]["octomap"]["total_s"].get<double>();
     report["frames_per_s_without_octomap"] =
         static_cast<double>(input.frames()) / std::max(clock.wall_s() - octomap_s, 1e-9);
+    std::vector<std::string> complaints = input.complaints();
+    if (!input.failure().empty()) complaints.push_back(input.failure());
+    for (const std::string& line : pipeline.complaints().totals()) complaints.push_back(line);
+    report["complaints"] = complaints;
     add_sizes(pipeline, input.frames(), report);
     if (const auto truth = input.truth()) add_accuracy(*truth, trajectory, report);
     write_file(folder / "report.md", report_markdown(report));
-    write_file(folder / "report.json", report.dump(2) + "\n");
+    write_file(folder / "report.json", report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
     return report;
 }
 

@@ -91,6 +91,11 @@ void add_tracking(const Json& report, std::string& out) {
                format("%.2f mm", 1000 * accuracy.at("rpe_frame_rmse_m").get<double>()) + " and " +
                format("%.3f deg", accuracy.at("rpe_frame_rmse_deg").get<double>()) + " (RMSE).\n\n";
     }
+    if (report.contains("complaints") && !report.at("complaints").empty()) {
+        out += "What was wrong with the input:\n\n";
+        for (const Json& line : report.at("complaints")) out += "- " + line.get<std::string>() + "\n";
+        out += "\n";
+    }
 }
 
 }  // namespace
