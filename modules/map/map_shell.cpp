@@ -15,6 +15,7 @@ namespace planemap {
 
 namespace {
 constexpr std::int64_t kWritePeriodUs = 5000000;
+constexpr std::int64_t kRetryPeriodUs = 1000000;  ///< after a write that failed
 constexpr const char* kFile = "plane_map.lcmlog";
 }  // namespace
 
@@ -54,12 +55,20 @@ void MapShell::on_trajectory(const RawMessage& message) {
 void MapShell::publish() {
     bus_.publish(channels::kMap, to_message(mapper_.map(), seq_++));
     status_.published();
-    status_.set_text(std::to_string(mapper_.map().planes.size()) + " planes");
     unwritten_ = true;
+    tell();
+}
+
+/// What there is, and what keeps it from the disk.
+void MapShell::tell() {
+    std::string text = std::to_string(mapper_.map().planes.size()) + " planes";
+    if (!write_error_.empty()) text += "; not written, trying every second: " + write_error_;
+    status_.set_text(text);
 }
 
 int MapShell::poll() {
-    if (unwritten_ && !output_.empty() && now_us() - last_write_us_ >= kWritePeriodUs) write();
+    const std::int64_t period = write_error_.empty() ? kWritePeriodUs : kRetryPeriodUs;
+    if (unwritten_ && !output_.empty() && now_us() - last_write_us_ >= period) try_write();
     return 100;
 }
 
@@ -67,10 +76,27 @@ void MapShell::finish() {
     const std::size_t rebuilds = mapper_.rebuilds();
     mapper_.settle();
     if (mapper_.rebuilds() != rebuilds) publish();
-    if (!output_.empty() && unwritten_) write();
+    if (!output_.empty() && unwritten_) try_write();
+    if (!write_error_.empty()) throw std::runtime_error("the map could not be written: " + write_error_);
+}
+
+/// A disk that is full or gone ends nothing: the map is kept, said not to be written, and tried again.
+void MapShell::try_write() {
+    const bool failed_before = !write_error_.empty();
+    try {
+        write();
+        write_error_.clear();
+        if (failed_before) spdlog::info("{} is written again", (output_ / kFile).string());
+    } catch (const std::exception& error) {
+        write_error_ = error.what();
+        last_write_us_ = now_us();
+        if (!failed_before) spdlog::warn("{}; the map is kept, trying every second", write_error_);
+    }
+    tell();
 }
 
 void MapShell::write() {
+    std::filesystem::create_directories(output_);  // somebody may have removed it
     write_plane_map(output_ / kFile, mapper_.map());
     last_write_us_ = now_us();
     unwritten_ = false;

@@ -13,8 +13,9 @@ struct MapShellOptions {
     MapOptions map;
     std::filesystem::path
         start;  ///< plane_map.lcmlog to start from, see PlaneMapper::start_from(); empty: none
-    /// Folder that plane_map.lcmlog is written to (beside and renamed), every few seconds and at a clean
-    /// stop; empty: none.
+    /// Folder that plane_map.lcmlog is written to (beside and renamed), every few seconds and at the end;
+    /// empty: none. It is tried at the start; a write that fails later is said in the status and tried again
+    /// every second, at the end finish() throws if the last one failed.
     std::filesystem::path output;
 };
 
@@ -34,6 +35,8 @@ class MapShell : public Shell {
     void on_keyframe(const RawMessage& message);
     void on_trajectory(const RawMessage& message);
     void publish();
+    void tell();
+    void try_write();
     void write();
 
     Bus& bus_;
@@ -42,6 +45,7 @@ class MapShell : public Shell {
     ModuleStatus status_{"map"};
     std::int32_t seq_ = 0;
     std::int64_t last_write_us_ = 0;
+    std::string write_error_;  ///< of the last attempt; empty if it went well
     bool unwritten_ = false;
 };
 

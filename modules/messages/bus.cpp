@@ -1,13 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "messages/bus.hpp"
 
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
 #include <spdlog/spdlog.h>
+#include <sys/socket.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <stdexcept>
+#include <thread>
 
 namespace planemap {
 
@@ -29,19 +36,45 @@ std::string completed(std::string url) {
     return url;
 }
 
-/// liblcm's own word on an unknown provider is a second line on stderr; ours says what there is.
-void check_provider(const std::string& url) {
-    for (const char* provider : {"udpm://", "mpudpm://", "tcpq://", "memq://", "file://"}) {
-        if (url.rfind(provider, 0) == 0) return;
+constexpr std::int64_t kRetryUs = 1000000;
+
+/// Errors of a send that another interface, route or address may cure.
+bool is_network_error(int error) {
+    switch (error) {
+        case ENETDOWN:
+        case ENETUNREACH:
+        case EHOSTDOWN:
+        case EHOSTUNREACH:
+        case ENODEV:
+        case ENXIO:
+        case EADDRNOTAVAIL:
+            return true;
+        default:
+            return false;
     }
-    throw std::runtime_error("LCM URL '" + url + "': the provider must be udpm, tcpq, memq or file");
+}
+
+/// A server that vanishes without a word must not stop a module for ever: the kernel asks an idle one after
+/// five seconds, a message that stops in the middle ends the connection after ten. Sending waits for slow
+/// receivers, that is how nothing is lost.
+void bound_waiting(int socket) {
+    const int on = 1, idle_s = 5, interval_s = 1, count = 5;
+    const timeval receive = {10, 0}, send = {60, 0};
+    ::setsockopt(socket, SOL_SOCKET, SO_KEEPALIVE, &on, sizeof(on));
+    ::setsockopt(socket, IPPROTO_TCP, TCP_KEEPIDLE, &idle_s, sizeof(idle_s));
+    ::setsockopt(socket, IPPROTO_TCP, TCP_KEEPINTVL, &interval_s, sizeof(interval_s));
+    ::setsockopt(socket, IPPROTO_TCP, TCP_KEEPCNT, &count, sizeof(count));
+    ::setsockopt(socket, SOL_SOCKET, SO_RCVTIMEO, &receive, sizeof(receive));
+    ::setsockopt(socket, SOL_SOCKET, SO_SNDTIMEO, &send, sizeof(send));
 }
 
 }  // namespace
 
 struct Bus::Subscriber {
     Bus* bus;
+    std::string channel;
     Handler handler;
+    int capacity;
 };
 
 std::int64_t now_us() {
@@ -59,30 +92,119 @@ std::string receive_buffer_advice(const std::string& url) {
            " bytes, frames may be lost: run `sysctl -w net.core.rmem_max=" + std::to_string(wanted) + "`";
 }
 
-Bus::Bus(const std::string& url) : url_(completed(url)) {
-    check_provider(url_);
-    lcm_ = std::make_unique<lcm::LCM>(url_);
-    if (!lcm_->good()) throw std::runtime_error("LCM URL '" + url_ + "' cannot be opened");
-    const std::string advice = receive_buffer_advice(url_);
+Bus::Bus(const std::string& url) : endpoint_(completed(url)) {
+    if (!connect() && !endpoint_.is_network())
+        throw std::runtime_error("LCM URL '" + this->url() + "': " + lost_reason_);
+    const std::string advice = receive_buffer_advice(this->url());
     if (!advice.empty()) spdlog::warn("{}", advice);
 }
 
-Bus::~Bus() = default;
+Bus::~Bus() {
+    discard();
+}
+
+/// Ends the connection. Of one to a server that is gone, liblcm tries to make it again for each subscription
+/// that it takes back, which may block for minutes: on a thread that nobody waits for.
+void Bus::discard() {
+    const bool server_gone = lcm_ && broken_ && endpoint_.is_network() && !endpoint_.is_multicast();
+    if (server_gone) std::thread([gone = std::move(lcm_)] {}).detach();
+    lcm_.reset();
+}
+
+/// Makes a new connection with all subscriptions. Asks without liblcm first: that would block and print.
+bool Bus::connect() {
+    last_attempt_us_ = now_us();
+    discard();
+    broken_ = false;
+    std::string reason = endpoint_.unreachable();
+    if (reason.empty()) {
+        lcm_ = std::make_unique<lcm::LCM>(endpoint_.url_for_liblcm());
+        if (!lcm_->good() || lcm_->getFileno() < 0) {
+            reason = "cannot be opened";
+        } else {
+            if (endpoint_.is_network() && !endpoint_.is_multicast()) bound_waiting(lcm_->getFileno());
+            for (const auto& subscriber : subscribers_) {
+                if (reason.empty() && !attach(*subscriber))
+                    reason = "cannot subscribe to " + subscriber->channel;
+            }
+        }
+    }
+    if (!reason.empty()) {
+        lose(reason);
+        return false;
+    }
+    if (lost_us_ > 0) {
+        spdlog::info("LCM URL '{}': connected after {:.0f} s; {} messages could not be sent so far", url(),
+                     static_cast<double>(now_us() - lost_us_) * 1e-6, unsent_);
+    }
+    lost_us_ = 0;
+    return true;
+}
+
+/// Ends the use of the connection. Said once for each time that it is lost.
+void Bus::lose(const std::string& reason) {
+    broken_ = true;
+    lost_reason_ = reason;
+    if (lost_us_ > 0 || !endpoint_.is_network()) return;
+    lost_us_ = now_us();
+    complaints_.add("LCM URL '" + url() + "': no connection (" + reason + "); trying every second");
+}
+
+void Bus::wait_and_reconnect(int timeout_ms) {
+    const std::int64_t left_us = last_attempt_us_ + kRetryUs - now_us();
+    if (left_us <= 0 || left_us > kRetryUs) {  // also when the clock was set back
+        connect();
+        return;
+    }
+    ::poll(nullptr, 0, std::min(timeout_ms, static_cast<int>(left_us / 1000 + 1)));
+}
+
+std::string Bus::trouble() const {
+    std::string text;
+    if (lost_us_ > 0) {
+        text = "no connection to " + url() + " for " + std::to_string((now_us() - lost_us_) / 1000000) +
+               " s (" + lost_reason_ + "), trying every second";
+    }
+    if (unsent_ > 0)
+        text += (text.empty() ? "" : "; ") + std::to_string(unsent_) + " messages could not be sent";
+    return text;
+}
 
 void Bus::publish_bytes(const std::string& channel, std::span<const std::uint8_t> bytes) {
-    if (lcm_->publish(channel, bytes.data(), static_cast<unsigned>(bytes.size())) != 0) {
-        throw std::runtime_error("LCM URL '" + url_ + "': " + channel + " (" + std::to_string(bytes.size()) +
-                                 " bytes) cannot be sent");
+    if (!connected()) {
+        ++unsent_;
+        return;
     }
+    // Of a message in parts, liblcm passes no error on but the last one's errno.
+    errno = 0;
+    const int result = lcm_->publish(channel, bytes.data(), static_cast<unsigned>(bytes.size()));
+    const bool network = endpoint_.is_multicast() && is_network_error(errno);
+    const bool server_gone = result != 0 && endpoint_.is_network() && !endpoint_.is_multicast();
+    if (result == 0 && !network) return;
+    ++unsent_;
+    if (network || server_gone) {
+        lose(network ? std::string("cannot send: ") + std::strerror(errno) : "the server is gone");
+        return;
+    }
+    complaints_.add("LCM URL '" + url() + "': " + channel + " (" + std::to_string(bytes.size()) +
+                    " bytes) cannot be sent");
 }
 
 void Bus::subscribe(const std::string& channel, Handler handler, int capacity) {
-    subscribers_.push_back(std::make_unique<Subscriber>(Subscriber{this, std::move(handler)}));
+    subscribers_.push_back(
+        std::make_unique<Subscriber>(Subscriber{this, channel, std::move(handler), capacity}));
+    if (!connected() || attach(*subscribers_.back())) return;
+    if (!endpoint_.is_network())
+        throw std::runtime_error("LCM URL '" + url() + "': cannot subscribe to " + channel);
+    lose("cannot subscribe to " + channel);
+}
+
+bool Bus::attach(Subscriber& subscriber) {
     lcm::Subscription* subscription =
-        lcm_->subscribeFunction(channel, &Bus::dispatch, subscribers_.back().get());
-    if (subscription == nullptr)
-        throw std::runtime_error("LCM URL '" + url_ + "': cannot subscribe to " + channel);
-    subscription->setQueueCapacity(in_process() ? 0 : capacity);
+        lcm_->subscribeFunction(subscriber.channel, &Bus::dispatch, &subscriber);
+    if (subscription == nullptr || lcm_->getFileno() < 0) return false;
+    subscription->setQueueCapacity(in_process() ? 0 : subscriber.capacity);
+    return true;
 }
 
 void Bus::dispatch(const lcm::ReceiveBuffer* buffer, const std::string& channel, Subscriber* subscriber) {
@@ -98,18 +220,27 @@ void Bus::dispatch(const lcm::ReceiveBuffer* buffer, const std::string& channel,
 
 void Bus::report(std::string_view channel, const char* reason) {
     ++handler_errors_;
-    const std::int64_t now = now_us();
-    if (now - last_report_us_ < 1000000) return;  // once per burst
-    last_report_us_ = now;
-    spdlog::warn("{}: message dropped ({} so far): {}", channel, handler_errors_, reason);
+    complaints_.add(std::string(channel) + ": message dropped: " + reason);
 }
 
 bool Bus::handle(int timeout_ms) {
-    errno = 0;
-    const int result = lcm_->handleTimeout(timeout_ms);
-    if (result < 0 && errno == EINTR) return false;  // a signal, most likely the one that asks to stop
-    if (result < 0) throw std::runtime_error("LCM URL '" + url_ + "': receiving failed");
-    return result > 0;
+    if (!connected()) {
+        wait_and_reconnect(timeout_ms);
+        return false;
+    }
+    // Not handleTimeout(): its select() ends the process for a descriptor that is none, or above 1023.
+    pollfd ready = {lcm_->getFileno(), POLLIN, 0};
+    const int waiting = ready.fd < 0 ? -1 : ::poll(&ready, 1, timeout_ms);
+    if (waiting == 0 || (waiting < 0 && errno == EINTR)) return false;
+    if (waiting > 0 && lcm_->handle() == 0) return true;
+    if (endpoint_.is_log()) {
+        ended_ = true;
+        return false;
+    }
+    if (!endpoint_.is_network()) throw std::runtime_error("LCM URL '" + url() + "': receiving failed");
+    lose(endpoint_.is_multicast() ? "receiving failed" : "the server is gone");
+    last_attempt_us_ = 0;  // whatever broke may be whole at once
+    return false;
 }
 
 void Bus::drain() {

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "messages/complaints.hpp"
+#include "messages/endpoint.hpp"
 #include "messages/error.hpp"
 
 namespace planemap {
@@ -21,26 +23,29 @@ struct RawMessage {
 };
 
 /// One LCM connection. Handlers run in handle(), one after the other, on the caller's thread, and may throw:
-/// nothing gets through the C library, the exception is counted and logged once per burst.
+/// nothing gets through the C library, the exception is counted, and logged by its kind.
+///
+/// A bus outlives its network. Where there is no connection (no server, an interface that is down), handle()
+/// tries every second to make a new one with the same subscriptions, and what is published meanwhile is
+/// counted and not sent.
 class Bus {
   public:
     using Handler = std::function<void(const RawMessage&)>;
 
     /// Opens an LCM URL; empty means LCM_DEFAULT_URL, or LCM's default. A udpm URL without recv_buf_size gets
-    /// 4 MiB, since without it no camera frame arrives. Throws std::runtime_error that names the URL if it
-    /// cannot be opened.
+    /// 4 MiB, since without it no camera frame arrives. Throws std::runtime_error that names the URL and the
+    /// reason if it is malformed, or a log that cannot be read.
     explicit Bus(const std::string& url = "");
     ~Bus();
     Bus(const Bus&) = delete;
     Bus& operator=(const Bus&) = delete;
 
     /// The URL after completion.
-    const std::string& url() const { return url_; }
+    const std::string& url() const { return endpoint_.url(); }
     /// True for memq://, where nothing may be dropped.
-    bool in_process() const { return url_.rfind("memq://", 0) == 0; }
+    bool in_process() const { return url().rfind("memq://", 0) == 0; }
 
-    /// Sends a message. Throws std::runtime_error naming URL and channel if LCM refuses it (e.g. too large,
-    /// no server).
+    /// Sends a message. One that cannot be sent (no connection, too large) is counted in unsent().
     template <typename T>
     void publish(const std::string& channel, const T& message) {
         const int size = message.getEncodedSize();
@@ -56,29 +61,50 @@ class Bus {
     /// is dropped.
     void subscribe(const std::string& channel, Handler handler, int capacity = 30);
 
-    /// Waits at most timeout_ms for messages and handles one. Returns false on timeout.
-    /// Throws std::runtime_error when the connection fails.
+    /// Waits at most timeout_ms for messages and handles one. Returns false on timeout, a signal, or without
+    /// a connection; then it is tried to make one, once a second (a second at most, a signal ends it).
     bool handle(int timeout_ms);
     /// Handles until nothing waits; for memq://.
     void drain();
 
-    /// Counts and logs (once per burst) a message that was dropped; for shells that find out after their
-    /// handler returned.
+    /// False while there is no connection.
+    bool connected() const { return lcm_ != nullptr && !broken_; }
+    /// True when a file:// URL's log has been read to its end, or to a record that liblcm cannot read.
+    bool ended() const { return ended_; }
+    /// Messages that could not be sent, since the start.
+    std::int64_t unsent() const { return unsent_; }
+    /// What keeps the bus from working, for the status; empty if all is well.
+    std::string trouble() const;
+
+    /// Counts and logs (by its kind) a message that was dropped; for shells that find out after their handler
+    /// returned.
     void report(std::string_view channel, const char* reason);
     /// Messages dropped so, and handlers that threw, since the start.
     std::int64_t handler_errors() const { return handler_errors_; }
+    /// What went wrong on this bus, by its kind; shells add theirs.
+    Complaints& complaints() { return complaints_; }
+    const Complaints& complaints() const { return complaints_; }
 
   private:
     struct Subscriber;
     static void dispatch(const lcm::ReceiveBuffer* buffer, const std::string& channel,
                          Subscriber* subscriber);
+    bool connect();
+    void discard();
+    bool attach(Subscriber& subscriber);
+    void wait_and_reconnect(int timeout_ms);
+    void lose(const std::string& reason);
 
-    std::string url_;
+    Endpoint endpoint_;
     std::unique_ptr<lcm::LCM> lcm_;
     std::vector<std::unique_ptr<Subscriber>> subscribers_;
     std::vector<std::uint8_t> buffer_;
-    std::int64_t handler_errors_ = 0;
-    std::int64_t last_report_us_ = 0;
+    Complaints complaints_;
+    std::int64_t handler_errors_ = 0, unsent_ = 0;
+    bool broken_ = false;  ///< lcm_ is of no use any more; it goes where none of its handlers runs
+    bool ended_ = false;
+    std::string lost_reason_;
+    std::int64_t lost_us_ = 0, last_attempt_us_ = 0;
 };
 
 /// Wall clock, microseconds since the epoch.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "messages/log.hpp"
 
-#include <array>
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
@@ -9,17 +9,6 @@
 namespace planemap {
 
 namespace {
-
-constexpr std::uint32_t kSync = 0xEDA1DA01;
-constexpr std::size_t kHeader = 4 + 8 + 8 + 4 + 4;
-constexpr std::uint32_t kMaxChannel = 256;  // liblcm allows 63
-
-template <typename T>
-T big_endian(const std::uint8_t* bytes) {
-    T value = 0;
-    for (std::size_t i = 0; i < sizeof(T); ++i) value = static_cast<T>(value << 8 | bytes[i]);
-    return value;
-}
 
 template <typename T>
 void append(std::string& out, T value) {
@@ -30,77 +19,151 @@ void append(std::string& out, T value) {
     throw std::runtime_error(file.string() + ": cannot " + doing + ": " + std::strerror(error));
 }
 
-std::FILE* opened(const std::filesystem::path& file, const char* mode) {
-    std::error_code ignored;
-    if (std::filesystem::is_directory(file, ignored)) fail(file, "open", EISDIR);
-    std::FILE* handle = std::fopen(file.c_str(), mode);
+std::FILE* opened(const std::filesystem::path& file) {
+    std::FILE* handle = std::fopen(file.c_str(), "wb");
     if (handle == nullptr) fail(file, "open", errno);
     return handle;
 }
 
 }  // namespace
 
-LogReader::LogReader(const std::filesystem::path& file) : file_(opened(file, "rb")) {
-    std::error_code error;
-    size_ = std::filesystem::file_size(file, error);
-    if (error) fail(file, "read", error.value());
-}
+LogReader::LogReader(const std::filesystem::path& file) : records_(file) {}
 
 bool LogReader::next(LogEvent& event) {
-    while (at_ < size_) {
-        const std::uint64_t start = at_;
-        if (read_record(event)) return true;
-        // Not a record here: look for the next sync word, one byte on.
-        at_ = start + 1;
-        std::array<std::uint8_t, 65536> block;
-        bool found = false;
-        while (!found && at_ + 4 <= size_) {
-            std::fseek(file_.get(), static_cast<long>(at_), SEEK_SET);
-            const std::size_t got = std::fread(block.data(), 1, block.size(), file_.get());
-            if (got < 4) break;
-            std::size_t i = 0;
-            while (i + 4 <= got && big_endian<std::uint32_t>(&block[i]) != kSync) ++i;
-            found = i + 4 <= got;
-            at_ += i;
+    while (at_ < bytes_total()) {
+        auto record = records_.at(at_);
+        if (record && record->synced ? counts(*record) : record && !gap_ && records_.followed(*record)) {
+            if (gap_) add_gap(*gap_, at_, &*record);
+            if (!record->synced) add_gap(at_, at_ + sizeof(LogRecords::kSync), &*record);
+            deliver(*record, event);
+            return true;
         }
-        if (!found) at_ = size_;
-        skipped_ += at_ - start;
+        if (!gap_) gap_ = at_;
+        record = resume(at_ + 1);
+        truncated_ = !record && records_.cut_short(at_);
+        at_ = record ? record->at : bytes_total();
     }
+    if (gap_) add_gap(*gap_, at_, nullptr);
     return false;
 }
 
-/// Reads the record at at_ and moves behind it; false, wherever at_ then is, if there is none.
-bool LogReader::read_record(LogEvent& event) {
-    std::array<std::uint8_t, kHeader> header;
-    std::fseek(file_.get(), static_cast<long>(at_), SEEK_SET);
-    const std::size_t got = std::fread(header.data(), 1, kHeader, file_.get());
-    if (got < 4 || big_endian<std::uint32_t>(header.data()) != kSync) return false;
-    if (got < kHeader) {
-        truncated_ = true;
-        return false;
+/// True if a record that begins with the sync word is whole, as far as can be told by what follows it.
+bool LogReader::counts(const LogRecord& record) {
+    if (records_.followed(record)) return !records_.swallows(record);
+    if (records_.holds_log(record)) return true;
+    const auto next = resume(at_ + 1);
+    const std::uint64_t next_at = next ? next->at : bytes_total();
+    return next_at >= record.end && records_.before_stray_bytes(record, next_at);
+}
+
+/// The next record that counts, searched for once.
+std::optional<LogRecord> LogReader::resume(std::uint64_t from) {
+    const bool searched = ahead_from_ > 0 && from >= ahead_from_ && (nothing_ahead_ || from <= ahead_->at);
+    if (!searched) {
+        const std::uint64_t gap = gap_.value_or(at_);
+        ahead_ = records_.resume(gap, from, before_ ? std::optional(before_->number) : std::nullopt);
+        ahead_from_ = from;
+        nothing_ahead_ = !ahead_;
     }
-    const auto channel_length = big_endian<std::uint32_t>(&header[20]);
-    const auto data_length = big_endian<std::uint32_t>(&header[24]);
-    if (channel_length == 0 || channel_length > kMaxChannel || data_length > 0x7fffffffu) return false;
-    if (std::uint64_t{kHeader} + channel_length + data_length > size_ - at_) {
-        truncated_ = true;
-        return false;
+    return ahead_;
+}
+
+void LogReader::deliver(const LogRecord& record, LogEvent& event) {
+    event.number = record.number;
+    event.utime = record.utime;
+    event.channel.resize(record.channel_length);
+    event.bytes.resize(record.data_length);
+    const std::uint64_t channel = record.at + LogRecords::kHeader;
+    records_.file().read(channel,
+                         {reinterpret_cast<std::uint8_t*>(event.channel.data()), event.channel.size()});
+    records_.file().read(channel + record.channel_length, event.bytes);
+    if (expected_ && record.number == following(*expected_)) ++misnumbered_;
+    expected_.reset();
+    if (before_ && before_->end == record.at && record.number != following(before_->number))
+        expected_ = following(before_->number);
+    if (!first_utime_) first_utime_ = record.utime;
+    ++events_;
+    before_ = record;
+    at_ = record.end;
+    gap_.reset();
+}
+
+/// About how many events are lost in so many bytes.
+std::int64_t LogReader::lost_between(std::uint64_t bytes, const LogRecord* next) const {
+    if (next != nullptr) {
+        const std::int64_t first = before_ ? following(before_->number) : 0;
+        const std::uint64_t missing =
+            static_cast<std::uint64_t>(next->number) - static_cast<std::uint64_t>(first);
+        if (next->number >= first && missing <= bytes / LogRecords::kSmallest + 1)
+            return static_cast<std::int64_t>(missing);
     }
-    event.number = big_endian<std::int64_t>(&header[4]);
-    event.utime = big_endian<std::int64_t>(&header[12]);
-    event.channel.resize(channel_length);
-    event.bytes.resize(data_length);
-    if (std::fread(event.channel.data(), 1, channel_length, file_.get()) != channel_length) return false;
-    if (std::fread(event.bytes.data(), 1, data_length, file_.get()) != data_length) return false;
-    at_ += kHeader + channel_length + data_length;
-    truncated_ = false;  // whatever looked cut short was a stray sync word
-    return true;
+    if (events_ == 0) return 1;
+    const std::uint64_t good = at_ - skipped_ - bytes, mean = std::max<std::uint64_t>(1, good / events_);
+    return std::max<std::int64_t>(1, static_cast<std::int64_t>((bytes + mean / 2) / mean));
+}
+
+void LogReader::add_gap(std::uint64_t begin, std::uint64_t end, const LogRecord* next) {
+    LogGap gap;
+    gap.at = begin;
+    gap.bytes = end - begin;
+    if (next == nullptr || next->at == end) gap.events = lost_between(gap.bytes, next);
+    if (before_) gap.utime_before = before_->utime;
+    if (next != nullptr) gap.utime_after = next->utime;
+    skipped_ += gap.bytes;
+    events_lost_ += gap.events;
+    ++gap_count_;
+    if (gaps_.size() < kMaxGaps) gaps_.push_back(gap);
+    gap_.reset();
+}
+
+namespace {
+
+std::string seconds_text(std::int64_t utime, std::int64_t first) {
+    char text[40];
+    std::snprintf(text, sizeof(text), "%.3f s",
+                  (static_cast<double>(utime) - static_cast<double>(first)) * 1e-6);
+    return text;
+}
+
+std::string count_text(std::int64_t count, const std::string& what) {
+    return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
+std::string gap_text(const LogGap& gap, std::int64_t first_utime) {
+    std::string text = "bytes " + std::to_string(gap.at) + " to " + std::to_string(gap.at + gap.bytes) +
+                       ", about " + count_text(gap.events, "event") + " lost";
+    if (gap.utime_before) text += ", after " + seconds_text(*gap.utime_before, first_utime);
+    if (gap.utime_after) text += ", before " + seconds_text(*gap.utime_after, first_utime);
+    return text;
+}
+
+}  // namespace
+
+std::vector<std::string> LogReader::complaints() const {
+    const std::string name = records_.file().path().string();
+    std::vector<std::string> lines;
+    if (truncated_) lines.push_back(name + " is cut short: its last event is not whole");
+    if (gap_count_ > 0) {
+        lines.push_back(name + ": " + std::to_string(skipped_) + " bytes in " +
+                        count_text(gap_count_, "place") + " are no whole LCM events, about " +
+                        count_text(events_lost_, "event") + " lost (times from the log's first event)");
+    }
+    for (const LogGap& gap : gaps_) lines.push_back(name + ": " + gap_text(gap, first_utime_.value_or(0)));
+    if (gap_count_ > static_cast<std::int64_t>(gaps_.size()))
+        lines.push_back(name + ": and " +
+                        std::to_string(gap_count_ - static_cast<std::int64_t>(gaps_.size())) +
+                        " places more");
+    if (misnumbered_ > 0) {
+        lines.push_back(name + ": " + count_text(misnumbered_, "event") +
+                        " with a damaged number in the header, used all the same");
+    }
+    return lines;
 }
 
 std::string encode_event(const LogEvent& event) {
     std::string out;
-    out.reserve(kHeader + event.channel.size() + event.bytes.size());
-    append(out, kSync);
+    out.reserve(LogRecords::kHeader + event.channel.size() + event.bytes.size());
+    append(out, LogRecords::kSync);
     append(out, static_cast<std::uint64_t>(event.number));
     append(out, static_cast<std::uint64_t>(event.utime));
     append(out, static_cast<std::uint32_t>(event.channel.size()));
@@ -110,7 +173,7 @@ std::string encode_event(const LogEvent& event) {
     return out;
 }
 
-LogWriter::LogWriter(const std::filesystem::path& file) : path_(file), file_(opened(file, "wb")) {}
+LogWriter::LogWriter(const std::filesystem::path& file) : path_(file), file_(opened(file)) {}
 
 void LogWriter::write(const LogEvent& event) {
     const std::string bytes = encode_event(event);

@@ -7,8 +7,11 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "messages/log_records.hpp"
 
 namespace planemap {
 
@@ -19,29 +22,59 @@ struct LogEvent {
     std::vector<std::uint8_t> bytes;
 };
 
-/// Reads events in order; skips what is no record and says how much.
+/// Bytes of a log that belong to no whole event.
+struct LogGap {
+    std::uint64_t at = 0, bytes = 0;  ///< bytes [at, at + bytes) of the file
+    /// About how many events are lost in it: by the event numbers around it where these make sense, else by
+    /// the mean size of an event.
+    std::int64_t events = 0;
+    std::optional<std::int64_t> utime_before, utime_after;  ///< of the good events around it, microseconds
+};
+
+/// Reads events in order; skips what is no whole record and says how much and where. A record counts only if
+/// a record or the end of the file follows it (see log_records.hpp); an undamaged log gives every event.
+/// The time is linear in the file's size, whatever is in it.
 class LogReader {
   public:
-    /// Throws std::runtime_error naming file and reason if it cannot be opened.
+    static constexpr std::size_t kMaxGaps = 20;  ///< that are kept to be told one by one
+
+    /// Throws std::runtime_error naming file and reason if it cannot be opened or is no regular file.
     explicit LogReader(const std::filesystem::path& file);
 
-    /// False at the end of the file.
+    /// False at the end of the file. Throws std::runtime_error naming file, place and reason if reading
+    /// fails, or the file became shorter.
     bool next(LogEvent& event);
 
     std::uint64_t bytes_read() const { return at_; }
-    std::uint64_t bytes_total() const { return size_; }
-    std::uint64_t bytes_skipped() const { return skipped_; }  ///< that belong to no record
-    bool truncated() const { return truncated_; }             ///< the last record is cut short
+    std::uint64_t bytes_total() const { return records_.file().size(); }
+    std::uint64_t bytes_skipped() const { return skipped_; }   ///< that belong to no record
+    bool truncated() const { return truncated_; }              ///< the last record is cut short
+    const std::vector<LogGap>& gaps() const { return gaps_; }  ///< the first kMaxGaps
+    std::int64_t gap_count() const { return gap_count_; }
+    std::int64_t events_lost() const { return events_lost_; }  ///< in all gaps, about
+    /// Good events between two that are consecutive but for this one's number: its header is damaged.
+    std::int64_t misnumbered() const { return misnumbered_; }
+
+    /// All that is wrong with what was read so far, a line each, beginning with the file's name; empty if all
+    /// is well.
+    std::vector<std::string> complaints() const;
 
   private:
-    struct Close {
-        void operator()(std::FILE* file) const { std::fclose(file); }
-    };
-    bool read_record(LogEvent& event);
+    bool counts(const LogRecord& record);
+    std::optional<LogRecord> resume(std::uint64_t from);
+    void deliver(const LogRecord& record, LogEvent& event);
+    void add_gap(std::uint64_t begin, std::uint64_t end, const LogRecord* next);
+    std::int64_t lost_between(std::uint64_t bytes, const LogRecord* next) const;
 
-    std::unique_ptr<std::FILE, Close> file_;
-    std::uint64_t size_ = 0, at_ = 0, skipped_ = 0;
-    bool truncated_ = false;
+    LogRecords records_;
+    std::uint64_t at_ = 0, skipped_ = 0;
+    std::optional<std::uint64_t> gap_;         ///< where the one that at_ is in began
+    std::optional<LogRecord> before_, ahead_;  ///< the last good record; the one that resume() found
+    std::uint64_t ahead_from_ = 0;             ///< where the search for it began
+    bool nothing_ahead_ = false, truncated_ = false;
+    std::vector<LogGap> gaps_;
+    std::int64_t gap_count_ = 0, events_lost_ = 0, events_ = 0, misnumbered_ = 0;
+    std::optional<std::int64_t> first_utime_, expected_;  ///< expected_: where a number was out of sequence
 };
 
 /// One event as the bytes of a log file; logs are these one after the other.

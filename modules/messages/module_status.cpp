@@ -56,9 +56,10 @@ void ModuleStatus::lost(const std::string& what, std::int64_t count) {
     if (total >= threshold) spdlog::warn("{}: lost {} {} so far", module_, total, what);
 }
 
-/// The text with what was lost behind it.
+/// The text with what was lost, and what ails the bus, behind it.
 std::string ModuleStatus::full_text() const {
     std::string text = text_;
+    if (!bus_trouble_.empty()) text += (text.empty() ? "" : "; ") + bus_trouble_;
     for (const auto& [what, count] : losses_) {
         text += (text.empty() ? "" : "; ") + std::string("lost ") + std::to_string(count) + " " + what;
     }
@@ -102,6 +103,7 @@ module_status_t ModuleStatus::message(std::int64_t now_us, bool stopped) const {
 bool ModuleStatus::publish_if_due(Bus& bus, std::int64_t now_us, bool stopped) {
     if (window_start_us_ == 0) window_start_us_ = now_us;
     if (!stopped && now_us - window_start_us_ < kPeriodUs) return false;
+    bus_trouble_ = bus.trouble();
     last_ = message(now_us, stopped);
     bus.publish(channel_, last_);
     ++seq_;

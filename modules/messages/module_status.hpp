@@ -74,7 +74,7 @@ class ModuleStatus {
     module_status_t message(std::int64_t now_us, bool stopped) const;
     std::string full_text() const;
 
-    std::string module_, channel_, text_;
+    std::string module_, channel_, text_, bus_trouble_;
     std::int64_t received_ = 0, published_ = 0, dropped_ = 0, decode_errors_ = 0, gaps_ = 0;
     std::map<std::string, std::int64_t> losses_;
     std::optional<std::uint32_t> last_seq_;

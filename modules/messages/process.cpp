@@ -8,6 +8,7 @@
 #include <atomic>
 #include <csignal>
 #include <cstdio>
+#include <exception>
 
 namespace planemap {
 
@@ -25,9 +26,9 @@ void on_signal(int signal) {
 
 constexpr std::int64_t kLinePeriodUs = 5000000;
 
-void serve(Shell& shell, Bus& bus) {
+void run_loop(Shell& shell, Bus& bus) {
     std::int64_t last_line = now_us();
-    while (!stop_requested()) {
+    while (!stop_requested() && !bus.ended()) {
         const int wait_ms = shell.poll();
         if (wait_ms < 0) break;
         bus.handle(std::min(wait_ms, 200));
@@ -38,9 +39,26 @@ void serve(Shell& shell, Bus& bus) {
             last_line = now;
         }
     }
-    shell.finish();
+}
+
+/// Whatever fails, what the module has is published or written before the failure ends the process.
+void serve(Shell& shell, Bus& bus) {
+    std::exception_ptr failure;
+    try {
+        run_loop(shell, bus);
+    } catch (...) {
+        failure = std::current_exception();
+    }
+    try {
+        if (!bus.connected()) bus.handle(0);  // a last attempt, for what finish() sends
+        shell.finish();
+    } catch (...) {
+        if (!failure) failure = std::current_exception();
+    }
     shell.status().publish_if_due(bus, now_us(), true);
     spdlog::info("{}", shell.status().line());
+    bus.complaints().log_totals();
+    if (failure) std::rethrow_exception(failure);
 }
 
 }  // namespace
@@ -56,6 +74,7 @@ void catch_stop_signals() {
     sigaction(SIGINT, &action, nullptr);
     sigaction(SIGTERM, &action, nullptr);
     std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit is a write that fails, not the end
 }
 
 void start_logging(const std::string& program, bool verbose) {
@@ -90,7 +109,7 @@ int Process::run(int argc, char** argv, const std::function<std::unique_ptr<Shel
         catch_stop_signals();
         Bus bus(lcm_url_);
         const std::unique_ptr<Shell> shell = make_shell(bus);
-        spdlog::info("on {}", bus.url());
+        if (bus.connected()) spdlog::info("on {}", bus.url());
         serve(*shell, bus);
         return 0;
     });

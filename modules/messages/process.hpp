@@ -20,7 +20,8 @@ class Shell {
     /// Work that no message starts. Returns the milliseconds until it wants to be called again, or a negative
     /// number when the module is done (the sensor at the end of its input).
     virtual int poll() { return 100; }
-    /// Called once before a clean stop: publish or write what is still held back.
+    /// Called once before the end, a clean one or not: publish or write what is still held back. What it
+    /// throws becomes the process's one line and exit code 1.
     virtual void finish() {}
 };
 

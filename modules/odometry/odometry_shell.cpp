@@ -79,6 +79,7 @@ void OdometryShell::process(const Waiting& input) {
     } catch (const MessageError& error) {  // a broken colour image leaves a good depth image
         status_.decode_error();
         status_.set_text(error.what());
+        bus_.complaints().add(std::string(channels::kFrame) + ": colour left out: " + error.what());
     }
     if (input.regions) in.regions = input.regions->regions;
     OdometryResult result;

@@ -34,14 +34,10 @@ SensorShell::SensorShell(Bus& bus, std::unique_ptr<FrameSource> source, SensorSh
     if (options_.live) ahead_ = std::make_unique<ReadAhead>(source_);
 }
 
-/// Logs the first fault of each kind; the status counts them all.
+/// The first fault of each kind is told at once; the status and the bus's complaints count them all.
 void SensorShell::complain(const std::string& what, const ReadResult& result) {
-    constexpr std::size_t kMostTold = 16;
     status_.lost(what);
-    const std::string& reason = result.reason.empty() ? result.message : result.reason;
-    if (told_.size() < kMostTold && told_.insert(what + reason).second) {
-        spdlog::warn("{} (more of the same is only counted)", result.message);
-    }
+    bus_.complaints().add(result.message, what + (result.reason.empty() ? result.message : result.reason));
 }
 
 void SensorShell::count(const ReadResult& result) {
@@ -89,6 +85,13 @@ SensorShell::Read SensorShell::read() {
 }
 
 int SensorShell::poll() {
+    const std::int64_t now = now_us();
+    if (!bus_.connected()) {  // a recording waits for those who listen
+        if (disconnected_us_ == 0) disconnected_us_ = now;
+        return 100;
+    }
+    if (disconnected_us_ != 0 && start_wall_us_ != 0) start_wall_us_ += now - disconnected_us_;
+    disconnected_us_ = 0;
     if (options_.live && camera_is_due(last_utime_)) publish_camera(last_utime_);
     if (!pending_) {
         const Read got = read();

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <memory>
-#include <set>
 #include <string>
 
 #include "messages/convert.hpp"
@@ -33,7 +32,8 @@ class SensorShell : public Shell {
     SensorShell(Bus& bus, std::unique_ptr<FrameSource> source, SensorShellOptions options);
 
     ModuleStatus& status() override { return status_; }
-    /// Reads the next frame, or publishes it if it is due; negative at the end of the source.
+    /// Reads the next frame, or publishes it if it is due; negative at the end of the source. Without a
+    /// connection nothing is read: a recording goes on when there is one.
     int poll() override;
     /// Throws std::runtime_error if the source came to its end without one frame that could be used.
     void finish() override;
@@ -70,9 +70,9 @@ class SensorShell : public Shell {
     std::int64_t frames_ = 0, broken_ = 0, colorless_ = 0, ends_missing_ = 0;
     std::int64_t start_wall_us_ = 0, start_utime_ = 0, last_utime_ = 0;
     std::int64_t last_camera_utime_ = 0, last_camera_wall_us_ = 0;
+    std::int64_t disconnected_us_ = 0;  ///< since when the bus has no connection; 0: it has
     std::int32_t camera_seq_ = 0;
-    std::set<std::string> told_;  ///< faults that were logged
-    std::string first_fault_;     ///< of a frame that could not be used
+    std::string first_fault_;  ///< of a frame that could not be used
 };
 
 /// --rate, --speed.

@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "map/map_shell.hpp"
 
+#include <sys/resource.h>
 #include <unistd.h>
 
+#include <chrono>
+#include <csignal>
+#include <thread>
+
 #include "core/files.hpp"
+#include "map/map_file.hpp"
 #include "messages/log.hpp"
 #include "messages/sample_messages.hpp"
 #include "shell_fixture.hpp"
@@ -74,6 +80,51 @@ TEST_F(MapShellTest, StartsFromAMapAndKeepsAnEarlierOneUntilItHasOne) {
     write_file(file, map.substr(0, map.size() - 5));
     EXPECT_THROW(MapShell(bus_, options), std::runtime_error);
     EXPECT_EQ(shell.mapper().map().planes.size(), 2u);
+}
+
+/// The limit on a file's size stands for a full disk: the write fails in the middle.
+class FullDisk {
+  public:
+    FullDisk() {
+        std::signal(SIGXFSZ, SIG_IGN);
+        ::getrlimit(RLIMIT_FSIZE, &before_);
+        const rlimit full = {16, before_.rlim_max};
+        ::setrlimit(RLIMIT_FSIZE, &full);
+    }
+    ~FullDisk() { ::setrlimit(RLIMIT_FSIZE, &before_); }
+
+  private:
+    rlimit before_ = {};
+};
+
+TEST_F(MapShellTest, AFullDiskOrALostFolderEndsNothingAndTheMapIsWrittenWhenItCanBe) {
+    MapShellOptions options;
+    options.output = folder_;
+    const std::filesystem::path file = folder_ / "plane_map.lcmlog";
+    MapShell shell(bus_, options);
+    const auto maps = collect<plane_map_t>(channels::kMap);
+    const std::string empty = read_file(file);
+    bus_.publish(channels::kKeyframe, to_message(test::sample_keyframe(), 0));
+    bus_.publish(channels::kTrajectory, to_message(trajectory(), 0));
+    {
+        const FullDisk full;
+        bus_.drain();
+        shell.poll();
+        EXPECT_EQ(read_file(file), empty) << "half a map never bears the name";
+        shell.status().publish_if_due(bus_, 1);
+        EXPECT_NE(shell.status().line().find("2 planes; not written, trying every second: " + file.string()),
+                  std::string::npos)
+            << shell.status().line();
+        EXPECT_THROW(shell.finish(), std::runtime_error);
+    }
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1) << "nothing is left beside";
+    std::filesystem::remove_all(folder_);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1050));
+    shell.poll();
+    EXPECT_EQ(read_plane_map(file).planes.size(), 2u);
+    EXPECT_EQ(shell.status().line().find("not written"), std::string::npos) << shell.status().line();
+    EXPECT_NO_THROW(shell.finish());
+    EXPECT_EQ(maps->size(), 1u);
 }
 
 TEST_F(MapShellTest, AnOutputThatCannotBeWrittenIsAnErrorAtOnce) {

@@ -2,10 +2,21 @@
 #include "messages/bus.hpp"
 
 #include <gtest/gtest.h>
+#include <spdlog/sinks/ostream_sink.h>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <sstream>
+#include <thread>
 
 #include "messages/channels.hpp"
 #include "messages/decode.hpp"
+#include "messages/log.hpp"
+#include "messages/module_status.hpp"
 #include "messages/sample_messages.hpp"
+#include "messages/tcpq_server.hpp"
 
 namespace planemap {
 namespace {
@@ -49,14 +60,172 @@ TEST(Bus, MessagesPublishedInAHandlerArrive) {
     EXPECT_EQ(echoes, 1);
 }
 
-TEST(Bus, UdpmGetsAReceiveBufferAndABadUrlIsNamed) {
+TEST(Bus, UdpmGetsAReceiveBuffer) {
     EXPECT_NE(Bus("udpm://239.255.76.67:7667?ttl=0").url().find("&recv_buf_size=4194304"), std::string::npos);
-    try {
-        Bus bus("nonsense://x");
-        FAIL();
-    } catch (const std::runtime_error& error) {
-        EXPECT_NE(std::string(error.what()).find("nonsense://x"), std::string::npos);
+}
+
+/// What no network can ever make good ends at once, in one line that names the URL.
+TEST(Bus, AMalformedUrlIsAnErrorAtOnce) {
+    for (const char* url :
+         {"nonsense://x", "udpm", "udpm:/239.255.76.67:7667", "udpm://127.0.0.1:7667", "udpm://host:7667",
+          "udpm://239.255.76.67:port", "udpm://239.255.76.67:0", "udpm://239.255.76.67:70000",
+          "udpm://239.255.76.67:7667?ttl=far", "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=-1",
+          "mpudpm://1.2.3.4", "tcpq://127.0.0.1:", "tcpq://127.0.0.1:seven", "tcpq://a b:7700",
+          "tcpq://127.0.0.1:7700:1", "file://", "file:///no/such/log", "file:///tmp",
+          "file:///tmp/x?mode=q"}) {
+        const auto start = std::chrono::steady_clock::now();
+        try {
+            Bus bus(url);
+            ADD_FAILURE() << url;
+        } catch (const std::runtime_error& error) {
+            const std::string what = error.what(),
+                              path = std::string(url).substr(std::string(url).find(':') + 3);
+            const bool named = what.find(url) != std::string::npos || what.rfind(path, 0) == 0;
+            EXPECT_TRUE(named) << url << ": " << what;
+            EXPECT_EQ(what.find('\n'), std::string::npos) << what;
+        }
+        EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(1)) << url;
     }
+}
+
+/// Handles until the condition holds, or for some seconds.
+template <typename Condition>
+bool handle_until(std::initializer_list<Bus*> buses, Condition condition, double seconds = 5) {
+    const auto start = std::chrono::steady_clock::now();
+    while (!condition()) {
+        if (std::chrono::steady_clock::now() - start > std::chrono::duration<double>(seconds)) return false;
+        for (Bus* bus : buses) bus->handle(20);
+    }
+    return true;
+}
+
+std::uint16_t free_port() {
+    return test::TcpqServer().port();
+}
+
+TEST(Bus, AServerThatComesLateIsFoundAndOneThatGoesAndComesAgainToo) {
+    const std::uint16_t port = free_port();
+    const std::string url =
+        "tcpq://localhost:" + std::to_string(port);  // a name, which liblcm cannot resolve
+    Bus from(url), to(url);
+    std::vector<std::size_t> seen;
+    to.subscribe("A", [&](const RawMessage& m) { seen.push_back(m.bytes.size()); });
+    EXPECT_FALSE(from.connected());
+    EXPECT_NE(from.trouble().find("no connection to " + url), std::string::npos) << from.trouble();
+    std::size_t size = 0;
+    const auto send = [&] { from.publish_bytes("A", std::vector<std::uint8_t>(++size)); };
+    send();  // into nothing
+    EXPECT_EQ(from.unsent(), 1);
+    EXPECT_FALSE(handle_until(
+        {&from, &to}, [&] { return from.connected(); }, 1.3));
+    EXPECT_EQ(from.complaints().totals().size(), 1u) << "said once";
+
+    for (int life = 0; life < 3; ++life) {
+        {
+            test::TcpqServer server(port);
+            ASSERT_TRUE(handle_until({&from, &to}, [&] { return from.connected() && to.connected(); }))
+                << life;
+            ASSERT_TRUE(handle_until({&from, &to}, [&] { return server.subscriptions() > 0; })) << life;
+            const std::size_t before = seen.size();
+            send();
+            send();
+            ASSERT_TRUE(handle_until({&to}, [&] { return seen.size() == before + 2; })) << life;
+            EXPECT_EQ(seen.back(), size);
+        }
+        ASSERT_TRUE(handle_until({&from, &to}, [&] { return !from.connected() && !to.connected(); })) << life;
+        const std::int64_t unsent = from.unsent();
+        send();
+        EXPECT_EQ(from.unsent(), unsent + 1);
+    }
+    EXPECT_NE(from.trouble().find("4 messages could not be sent"), std::string::npos) << from.trouble();
+}
+
+TEST(Bus, AServerThatVanishesWhileASenderDoesNotListenIsNoticed) {
+    auto server = std::make_unique<test::TcpqServer>();
+    Bus bus(server->url());
+    ASSERT_TRUE(bus.connected());
+    server.reset();
+    for (int i = 0; i < 100 && bus.connected(); ++i) {
+        bus.publish_bytes("A", std::vector<std::uint8_t>(100));
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    EXPECT_FALSE(bus.connected());
+    EXPECT_GT(bus.unsent(), 0);
+    EXPECT_FALSE(bus.handle(0));
+}
+
+TEST(Bus, WhoeverListensAndIsNoServerDoesNotHoldABusUp) {
+    const test::TcpqServer dumb(0, false);
+    const auto start = std::chrono::steady_clock::now();
+    Bus bus(dumb.url());
+    EXPECT_FALSE(bus.connected());
+    EXPECT_NE(bus.trouble().find("does not answer as an LCM server"), std::string::npos) << bus.trouble();
+    for (int i = 0; i < 5; ++i) bus.handle(100);
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(2));
+}
+
+TEST(Bus, AServerThatCannotBeReachedOrNamedIsNoError) {
+    for (const char* url :
+         {"tcpq://192.0.2.1:7700", "tcpq://no-such-host.invalid:7700", "tcpq://127.0.0.1:1"}) {
+        const auto start = std::chrono::steady_clock::now();
+        Bus bus(url);
+        bus.subscribe("A", [](const RawMessage&) {});
+        EXPECT_FALSE(bus.connected()) << url;
+        EXPECT_FALSE(bus.handle(10)) << url;
+        EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(1)) << url;
+    }
+}
+
+TEST(Bus, TheStatusTellsWhatAilsTheBus) {
+    Bus bus("tcpq://127.0.0.1:" + std::to_string(free_port()));
+    ModuleStatus status("map");
+    status.set_text("7 planes");
+    status.publish_if_due(bus, 1000000);
+    EXPECT_TRUE(status.publish_if_due(bus, 3000000));
+    EXPECT_NE(status.line().find("7 planes; no connection to tcpq://127.0.0.1"), std::string::npos)
+        << status.line();
+}
+
+TEST(Bus, ALogThatIsReadToItsEndEndsTheBus) {
+    const std::filesystem::path file =
+        std::filesystem::temp_directory_path() / ("planemap_bus_test_" + std::to_string(::getpid()));
+    LogWriter writer(file);
+    for (int i = 0; i < 5; ++i) writer.write({i, i, "A", {1, 2, 3}});
+    writer.close();
+    Bus bus("file://" + file.string() + "?speed=0");
+    int seen = 0;
+    bus.subscribe("A", [&](const RawMessage&) { ++seen; });
+    EXPECT_TRUE(handle_until({&bus}, [&] { return bus.ended(); }));
+    EXPECT_EQ(seen, 5);
+    std::filesystem::remove(file);
+}
+
+TEST(Complaints, ThousandsOfAKindAreAFewLinesAndACount) {
+    Complaints complaints;
+    std::ostringstream said;
+    const auto before = spdlog::default_logger();
+    spdlog::set_default_logger(
+        std::make_shared<spdlog::logger>("test", std::make_shared<spdlog::sinks::ostream_sink_mt>(said)));
+    for (int i = 0; i < 10000; ++i) complaints.add("frame " + std::to_string(i) + ".png: cannot be read");
+    complaints.add("another thing");
+    complaints.log_totals();
+    spdlog::set_default_logger(before);
+    const std::string text = said.str();
+    EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 5 + 1 + 1) << text;  // the 1st, 10th ... 10000th
+    EXPECT_EQ(complaints.count(), 10001);
+    const std::vector<std::string> totals = complaints.totals();
+    ASSERT_EQ(totals.size(), 2u);
+    EXPECT_EQ(totals[0], "another thing");
+    EXPECT_EQ(totals[1], "frame 0.png: cannot be read (10000 like it)");
+}
+
+TEST(Complaints, KindsAreBounded) {
+    spdlog::set_level(spdlog::level::off);
+    Complaints complaints;
+    for (int i = 0; i < 5000; ++i) complaints.add(std::string(static_cast<std::size_t>(i), 'x'));
+    spdlog::set_level(spdlog::level::info);
+    EXPECT_EQ(complaints.count(), 5000);
+    EXPECT_LE(complaints.totals().size(), Complaints::kMaxKinds + 1);
 }
 
 TEST(Bus, AdviceNamesTheSysctl) {

@@ -16,21 +16,7 @@ fail() {
     exit 1
 }
 
-# A network namespace with nothing but loopback, as root or as a user who may make one.
-if [[ -z "${PLANEMAP_OWN_NETWORK:-}" ]]; then
-    for unshare in "unshare --net" "unshare --net --map-root-user"; do
-        if $unshare ip link set lo up 2>/dev/null; then
-            PLANEMAP_OWN_NETWORK=1 exec $unshare "$0" "$@"
-        fi
-    done
-    if ! ip route get 239.255.76.67 >/dev/null 2>&1; then
-        echo "SKIP: no network namespace may be made here, and this network has no route for multicast"
-        exit 77
-    fi
-else
-    ip link set lo up
-    ip route add 224.0.0.0/4 dev lo
-fi
+source "$root/tests/tools/own_network.sh"
 
 work="$(mktemp -d)"
 launch_pid=

@@ -2,6 +2,14 @@
 // planemap-run and its companions as a user runs them: whole programs, real files, real exit codes.
 #include <gtest/gtest.h>
 
+#include <bot_core/images_t.hpp>
+#include <bot_core/pose_t.hpp>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "core/files.hpp"
 #include "core/trajectory.hpp"
 #include "data_folder.hpp"
 #include "messages/channels.hpp"
@@ -143,7 +151,8 @@ TEST_F(RunTest, ALogGivesTheMapOfItsFramesAndACutLogWhatIsWhole) {
     const std::size_t camera = ends.find("PLANEMAP_CAMERA_INFO") + 60;
     for (std::size_t i = camera; i < camera + 20; ++i) ends[i] = static_cast<char>(0xff);
     write_file(folder_ / "ends.lcmlog", ends);
-    expect_error("planemap-run", path("ends.lcmlog") + " --output " + path("ends"), "no camera_info_t");
+    expect_error("planemap-run", path("ends.lcmlog") + " --output " + path("ends"),
+                 "none of the 1 camera_info_t in this log can be used (");
     write_file(folder_ / "twice.lcmlog", ends + log);
     ASSERT_EQ(run("planemap-run", path("twice.lcmlog") + " --no-octomap --output " + path("twice")).exit_code,
               0);
@@ -157,6 +166,67 @@ TEST_F(RunTest, ALogGivesTheMapOfItsFramesAndACutLogWhatIsWhole) {
         run("planemap-run", path("spoilt.lcmlog") + " --no-octomap --output " + path("spoilt")).exit_code, 0);
     EXPECT_GE(report("spoilt").at("tracked").get<int>(), 27);
     EXPECT_LE(report("spoilt").at("tracked").get<int>(), 30);
+}
+
+TEST_F(RunTest, WhatIsDamagedInALogIsSaidAndCounted) {
+    ASSERT_EQ(run("planemap-simulate", "'sim:office?frames=20' --output " + path("office.lcmlog")).exit_code,
+              0);
+    // Every third colour image corrupt; one event's length damaged; another camera's colour images among
+    // them.
+    LogReader reader(folder_ / "office.lcmlog");
+    std::string log;
+    int frames = 0;
+    for (LogEvent event; reader.next(event);) {
+        if (event.channel == channels::kFrame && ++frames % 3 == 0) {
+            auto images = decode<bot_core::images_t>(event.bytes);
+            images.images[0].data.resize(images.images[0].data.size() / 2);
+            images.images[0].size /= 2;
+            event.bytes.resize(static_cast<std::size_t>(images.getEncodedSize()));
+            images.encode(event.bytes.data(), 0, images.getEncodedSize());
+        }
+        std::string bytes = encode_event(event);
+        if (frames == 10 && event.channel == channels::kFrame) bytes[25] = static_cast<char>(bytes[25] ^ 1);
+        log += bytes;
+    }
+    bot_core::images_t webcam;
+    webcam.image_types = {bot_core::images_t::LEFT};
+    webcam.images = {color_image_message(RgbImage(64, 48), 1, ColorEncoding::kJpeg, 90)};
+    webcam.n_images = 1;
+    LogEvent other{0, 1, "WEBCAM",
+                   std::vector<std::uint8_t>(static_cast<std::size_t>(webcam.getEncodedSize()))};
+    webcam.encode(other.bytes.data(), 0, webcam.getEncodedSize());
+    write_file(folder_ / "bad.lcmlog", encode_event(other) + log + encode_event(other));
+    const Result result =
+        run("planemap-run", path("bad.lcmlog") + " -q --no-octomap --output " + path("out"));
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    const Json complaints = report("out").at("complaints");
+    EXPECT_EQ(report("out").at("frames"), 19);
+    const std::string all = complaints.dump();
+    for (const char* said :
+         {"in 1 place are no whole LCM events, about 1 event lost", "colour left out: JPEG: ", "(6 like it)",
+          "frames of other channels than OPENNI_FRAME are not read: WEBCAM bot_core.images_t"}) {
+        EXPECT_NE(all.find(said), std::string::npos) << said << " in " << all;
+    }
+    EXPECT_NE(result.err.find("colour left out: JPEG: "), std::string::npos) << result.err;
+    EXPECT_LE(std::count(result.err.begin(), result.err.end(), '\n'), 6) << result.err;
+    EXPECT_NE(result.out.find("colour left out"), std::string::npos) << result.out;
+}
+
+TEST_F(RunTest, ALogOfOtherThingsSaysWhatIsInIt) {
+    LogWriter writer(folder_ / "other.lcmlog");
+    bot_core::pose_t pose{};
+    LogEvent event{0, 0, "POSE_BODY",
+                   std::vector<std::uint8_t>(static_cast<std::size_t>(pose.getEncodedSize()))};
+    pose.encode(event.bytes.data(), 0, pose.getEncodedSize());
+    for (int i = 0; i < 3; ++i) writer.write(event);
+    writer.write({3, 0, "MYSTERY", {1, 2, 3, 4, 5, 6, 7, 8, 9}});
+    writer.close();
+    expect_error("planemap-run", path("other.lcmlog") + " --output " + path("out"),
+                 "MYSTERY 0x0102030405060708 (1), POSE_BODY bot_core.pose_t (3)");
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
+    ASSERT_EQ(std::system(("mkfifo '" + path("fifo") + "'").c_str()), 0);
+    expect_error("planemap-run", path("fifo") + " --output " + path("out"), path("fifo"));
+    expect_error("planemap-run", "/dev/zero --output " + path("out"), "/dev/zero");
 }
 
 TEST_F(RunTest, ALogWithoutItsCameraNeedsOne) {
@@ -206,7 +276,13 @@ TEST_F(RunTest, BadInputIsOneClearLine) {
     expect_error("planemap-evaluate", path("nothing.txt") + " " + path("nothing.txt"), "nothing.txt");
     expect_error("planemap-simulate", "sim:office --output /proc/x/office.lcmlog", "/proc/x");
     expect_error("planemap-map", "--output /proc/nowhere --lcm-url memq://", "/proc/nowhere");
-    expect_error("planemap-odometry", "--lcm-url nonsense://x", "nonsense://x");
+    for (const char* module : {"sensor sim:office", "segmentation", "odometry", "graph", "map", "octomap"}) {
+        for (const char* url : {"nonsense://x", "tcpq://127.0.0.1:port", "udpm://127.0.0.1:7667"}) {
+            const std::string name(module, std::strcspn(module, " "));
+            expect_error("planemap-" + name,
+                         std::string(module).substr(name.size()) + " --lcm-url '" + url + "'", url);
+        }
+    }
 }
 
 TEST_F(RunTest, DepthThatIsAllZeroIsSaid) {

@@ -3,6 +3,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <bot_core/images_t.hpp>
 #include <chrono>
 #include <filesystem>
@@ -13,6 +14,7 @@
 #include "messages/convert.hpp"
 #include "messages/decode.hpp"
 #include "messages/log.hpp"
+#include "run/log_contents.hpp"
 #include "sensor/sensor_shell.hpp"
 #include "sensor/simulator/simulated_source.hpp"
 
@@ -35,17 +37,16 @@ class SensorInput : public Input {
         if (!size || *size == 0) return std::nullopt;
         return static_cast<double>(frames()) / static_cast<double>(*size);
     }
-    std::string complaints() const override {
-        std::string text;
-        if (shell_.broken() > 0) text += std::to_string(shell_.broken()) + " frames could not be read";
-        if (shell_.colorless() > 0) {
-            text += (text.empty() ? "" : ", ") + std::to_string(shell_.colorless()) + " without their colour";
-        }
-        if (shell_.ends_missing() > 0) {
-            text += (text.empty() ? "" : ", ") + std::to_string(shell_.ends_missing()) +
-                    " from files that are cut short behind their last pixel";
-        }
-        return text;
+    std::vector<std::string> complaints() const override {
+        std::vector<std::string> lines;
+        if (shell_.broken() > 0)
+            lines.push_back(std::to_string(shell_.broken()) + " frames could not be read");
+        if (shell_.colorless() > 0)
+            lines.push_back(std::to_string(shell_.colorless()) + " frames without their colour");
+        if (shell_.ends_missing() > 0)
+            lines.push_back(std::to_string(shell_.ends_missing()) +
+                            " frames from files that are cut short behind their last pixel");
+        return lines;
     }
 
     std::optional<Trajectory> truth() const override {
@@ -87,47 +88,71 @@ class SensorInput : public Input {
     std::optional<Trajectory> truth_;  ///< of a folder
 };
 
-std::uint64_t fingerprint(const LogEvent& event) {
-    std::uint64_t value = 0;
-    for (std::size_t i = 0; i < 8 && event.bytes.size() >= 8; ++i) value = value << 8 | event.bytes[i];
-    return value;
+template <typename T>
+bool is_a(const LogEvent& event) {
+    return fingerprint(event) == static_cast<std::uint64_t>(T::getHash());
 }
 
-/// True for a camera description that can be used: one that is corrupt may be followed by a good one.
-bool describes(const LogEvent& event) {
+/// Why a message of the type cannot be used; empty if it can.
+template <typename T>
+std::string why_unusable(const LogEvent& event) {
     try {
-        from_message(decode<camera_info_t>(event.bytes));
-        return true;
-    } catch (const MessageError&) {
+        from_message(decode<T>(event.bytes));
+        return {};
+    } catch (const MessageError& error) {
+        return error.what();
+    }
+}
+
+bool has_depth(const LogEvent& event) {
+    try {
+        const auto types = decode<bot_core::images_t>(event.bytes).image_types;
+        return std::any_of(types.begin(), types.end(), [](std::int16_t type) {
+            return type == bot_core::images_t::DEPTH_MM || type == bot_core::images_t::DEPTH_MM_ZIPPED;
+        });
+    } catch (const std::exception&) {
         return false;
     }
 }
 
-/// An LCM log: images_t from the first channel that has them, the camera from the first camera_info_t.
+/// An LCM log: images_t from the first channel on which they have depth, the camera from the first
+/// camera_info_t that can be used.
 class LogInput : public Input {
   public:
     LogInput(const std::string& name, Bus& bus, bool has_camera, const FrameRange& range)
-        : name_(name), bus_(bus), log_(name), range_(range) {
+        : name_(name), bus_(bus), log_(name), range_(range), follow_camera_(!has_camera) {
         LogReader ahead(name);
-        LogEvent event;
+        LogContents contents;
         bool described = false;
-        while (!(described && !channel_.empty()) && ahead.next(event)) {
-            const std::uint64_t type = fingerprint(event);
-            if (channel_.empty() && type == static_cast<std::uint64_t>(bot_core::images_t::getHash()))
+        std::int64_t unusable = 0;
+        std::string reason;
+        for (LogEvent event; !(described && !channel_.empty()) && ahead.next(event);) {
+            contents.add(event);
+            if (channel_.empty() && is_a<bot_core::images_t>(event) && has_depth(event))
                 channel_ = event.channel;
-            if (!described && type == static_cast<std::uint64_t>(camera_info_t::getHash()) &&
-                describes(event)) {
+            if (described || !is_a<camera_info_t>(event)) continue;
+            const std::string why = why_unusable<camera_info_t>(event);
+            if (why.empty()) {
                 described = true;
                 if (!has_camera) bus_.publish_bytes(channels::kCameraInfo, event.bytes);
+            } else if (++unusable == 1) {
+                reason = why;
             }
         }
-        if (channel_.empty())
-            throw std::runtime_error(name + ": no camera frames (bot_core.images_t) in this log");
-        if (!described && !has_camera) {
-            throw std::runtime_error(
-                name + ": no camera_info_t in this log says what its camera is; give --camera camera.json");
+        if (channel_.empty()) {
+            throw std::runtime_error(name +
+                                     ": no camera frames with depth (bot_core.images_t with DEPTH_MM or "
+                                     "DEPTH_MM_ZIPPED) in this log; in it are " +
+                                     contents.text());
         }
-        follow_camera_ = !has_camera;
+        if (!described && !has_camera) {
+            throw std::runtime_error(name +
+                                     (unusable > 0
+                                          ? ": none of the " + std::to_string(unusable) +
+                                                " camera_info_t in this log can be used (" + reason + ")"
+                                          : ": no camera_info_t in this log says what its camera is") +
+                                     "; give --camera camera.json");
+        }
         if (range_.from > 0) check_range();
     }
 
@@ -136,31 +161,32 @@ class LogInput : public Input {
         return static_cast<double>(log_.bytes_read()) /
                static_cast<double>(std::max<std::uint64_t>(log_.bytes_total(), 1));
     }
-    std::string complaints() const override {
-        std::string text;
-        if (log_.truncated()) text = name_ + " is cut short: its last event is not whole";
-        if (log_.bytes_skipped() > 0) {
-            text += (text.empty() ? "" : "; ") + std::to_string(log_.bytes_skipped()) + " bytes of " + name_ +
-                    " are no whole LCM events";
-        }
-        return text;
+    std::vector<std::string> complaints() const override {
+        std::vector<std::string> lines = log_.complaints();
+        if (unread_.count() > 0)
+            lines.push_back("frames of other channels than " + channel_ + " are not read: " + unread_.text());
+        return lines;
     }
+    std::string failure() const override { return failure_; }
 
   private:
     bool publish_next() override {
-        LogEvent event;
-        while (log_.next(event)) {
-            if (event.channel == channel_) {
-                const std::size_t number = next_++;
-                if (number < range_.from) continue;
-                if (range_.to && number >= *range_.to) return false;
-                bus_.publish_bytes(channels::kFrame, event.bytes);
-                ++frames_;
-                return true;
+        try {
+            for (LogEvent event; log_.next(event);) {
+                if (event.channel == channel_) {
+                    const std::size_t number = next_++;
+                    if (number < range_.from) continue;
+                    if (range_.to && number >= *range_.to) return false;
+                    bus_.publish_bytes(channels::kFrame, event.bytes);
+                    ++frames_;
+                    return true;
+                }
+                if (follow_camera_ && event.channel == channels::kCameraInfo)
+                    bus_.publish_bytes(channels::kCameraInfo, event.bytes);
+                if (is_a<bot_core::images_t>(event)) unread_.add(event);
             }
-            if (follow_camera_ && event.channel == channels::kCameraInfo) {
-                bus_.publish_bytes(channels::kCameraInfo, event.bytes);
-            }
+        } catch (const std::runtime_error& error) {  // a disk that fails: what there is so far is kept
+            failure_ = error.what();
         }
         return false;
     }
@@ -178,9 +204,10 @@ class LogInput : public Input {
     LogReader log_;
     FrameRange range_;
     std::size_t next_ = 0;  ///< number of the next frame in the log
-    std::string channel_;
+    LogContents unread_;    ///< images_t of other channels
+    std::string channel_, failure_;
     std::int64_t frames_ = 0;
-    bool follow_camera_ = true;
+    bool follow_camera_;
 };
 
 }  // namespace
@@ -200,6 +227,8 @@ std::unique_ptr<Input> open_input(const std::string& name, Bus& bus, const std::
     std::error_code ignored;
     if (std::filesystem::is_regular_file(name, ignored))
         return std::make_unique<LogInput>(name, bus, camera.has_value(), frames);
+    if (std::filesystem::exists(name, ignored) && !std::filesystem::is_directory(name, ignored))
+        throw std::runtime_error(name + ": is neither a folder nor a regular file");
     return std::make_unique<SensorInput>(name, bus, frames);
 }
 

@@ -27,8 +27,11 @@ class Input {
     virtual std::int64_t frames() const = 0;
     /// How far the input is read, 0 to 1; nothing if that is not known.
     virtual std::optional<double> progress() const = 0;
-    /// What the user should know at the end (skipped bytes, broken frames); empty if all is well.
-    virtual std::string complaints() const = 0;
+    /// What the user should know at the end (skipped bytes, broken frames), a line each; empty if all is
+    /// well.
+    virtual std::vector<std::string> complaints() const = 0;
+    /// Why the input ended before its end (a disk that fails); empty if it did not.
+    virtual std::string failure() const { return {}; }
     /// The true trajectory of the colour camera, if the input knows it (groundtruth.txt of a folder, the
     /// simulator).
     virtual std::optional<Trajectory> truth() const { return std::nullopt; }

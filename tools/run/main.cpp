@@ -143,13 +143,15 @@ int run(RunOptions options, const nlohmann::ordered_json& about) {
         spdlog::warn("{}: no pose within 0.1 s of {} keyframes, which are not in the map",
                      options.poses.string(), given->missing());
     }
-    if (!input->complaints().empty()) spdlog::warn("{}", input->complaints());
+    for (const std::string& line : input->complaints()) spdlog::warn("{}", line);
+    bus.complaints().log_totals();
 
     const Outputs outputs = write_outputs(folder, options.input, *input, pipeline, clock, about);
     warn(folder.take_notes());
     if (!outputs.report.is_null()) warn(outputs.report.at("warnings").get<std::vector<std::string>>());
     std::vector<std::string> problems = problems_of(options.input, *input, pipeline, folder, outputs);
-    if (!error.empty()) problems.push_back(error + "; what was mapped until then is kept");
+    for (const std::string& failure : {input->failure(), error})
+        if (!failure.empty()) problems.push_back(failure + "; what was mapped until then is kept");
     try {
         print_report(outputs);
     } catch (const std::exception& failure) {

@@ -101,6 +101,10 @@ Json report_of(const std::string& input_name, const Input& input, Pipeline& pipe
     const double octomap_s = report["stages_ms"]["octomap"]["total_s"].get<double>();
     report["frames_per_s_without_octomap"] =
         static_cast<double>(input.frames()) / std::max(clock.wall_s() - octomap_s, 1e-9);
+    std::vector<std::string> complaints = input.complaints();
+    if (!input.failure().empty()) complaints.push_back(input.failure());
+    for (const std::string& line : pipeline.complaints().totals()) complaints.push_back(line);
+    report["complaints"] = complaints;
     add_sizes(pipeline, input.frames(), report);
     add_accuracy(input, pipeline, report);
     report["warnings"] = warnings_of(estimates, pipeline.given_poses() != nullptr, report);
@@ -116,7 +120,8 @@ std::vector<Result> further_results(const Input& input, Pipeline& pipeline, cons
         results.push_back({name, [=](const auto& file) { write_file(file, bytes()); }});
     };
     if (!report.is_null()) {
-        add("report.json", [&report] { return report.dump(2) + "\n"; });
+        add("report.json",
+            [&report] { return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; });
         add("report.md", [&report] { return report_markdown(report); });
     }
     for (Result& truth : input.truth_results()) results.push_back(std::move(truth));

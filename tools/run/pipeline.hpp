@@ -52,6 +52,8 @@ class Pipeline {
     /// a graph their poses in the odom frame, with given poses these.
     Trajectory trajectory() const;
 
+    /// What went wrong on the bus, by its kind.
+    const Complaints& complaints() const { return bus_.complaints(); }
     FrameDecoder& decoder() { return *decoder_; }
     SegmentationShell& segmentation() { return segmentation_; }
     OdometryShell& odometry() { return odometry_; }

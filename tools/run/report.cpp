@@ -57,6 +57,11 @@ void add_tracking(const Json& report, std::string& out) {
     if (report.contains("accuracy") || report.contains("accuracy_note")) out += "\n";
     for (const Json& warning : report.value("warnings", Json::array()))
         out += "**Warning:** " + warning.get<std::string>() + ".\n\n";
+    if (report.contains("complaints") && !report.at("complaints").empty()) {
+        out += "What was wrong with the input:\n\n";
+        for (const Json& line : report.at("complaints")) out += "- " + line.get<std::string>() + "\n";
+        out += "\n";
+    }
 }
 
 }  // namespace
