@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "core/random_values.hpp"
+#include "core/two_cameras.hpp"
 
 namespace planemap {
 namespace {
@@ -90,6 +92,127 @@ TEST(Registration, RegisteredDepthOfAnotherSizeIsScaled) {
     const DepthImage half = register_depth(DepthImage(80, 60, 1234), info);
     EXPECT_EQ(half.width, 40);
     for (const auto raw : half.pixels) EXPECT_EQ(raw, 1234);
+}
+
+/// Ratios of the depth camera's focal lengths to the colour camera's.
+struct Ratio {
+    double x, y;
+};
+const std::vector<Ratio> kRatios{{0.3, 0.3}, {0.5, 0.5},   {0.62, 0.62}, {0.8, 0.8}, {0.95, 0.95}, {1, 1},
+                                 {1.1, 1.1}, {1.25, 1.25}, {1.5, 1.5},   {2, 2},     {4, 4},       {0.5, 0.8},
+                                 {0.9, 1.2}, {2, 1.1},     {0.3, 4},     {4, 0.3}};
+
+void expect_filled(const Ratio& ratio, const CameraInfo& info, double slant, double noise, Random& random) {
+    const test::Scene scene = test::Scene::room(slant);
+    const test::Sensed sensed = test::sense(scene, info, noise, random);
+    const test::Registered result = test::compare(scene, info, sensed, register_depth(sensed.depth, info));
+    SCOPED_TRACE(testing::Message() << "ratio " << ratio.x << ", " << ratio.y << ", slant " << slant
+                                    << ", noise " << noise << ", rms " << result.rms << ", mean "
+                                    << result.mean);
+    EXPECT_GT(result.inside, info.color.width * info.color.height / 4);
+    EXPECT_LE(result.holes, 0.02 * result.inside);
+    EXPECT_EQ(result.beyond, 0);
+    EXPECT_LE(result.wrong, 0.001 * result.inside);
+    // Where pixels are as coarse as readings a reading's depth stands for the whole pixel.
+    EXPECT_LT(result.rms, 0.6 + noise);
+    EXPECT_LT(std::abs(result.mean), 0.3);
+}
+
+TEST(Registration, SurfacesHaveNoHolesAndEndAtTheirEdgesAtAnyRatio) {
+    Random random(5);
+    for (const Ratio& ratio : kRatios) {
+        for (const double slant : {-1.0, 0.0, 0.7}) {
+            for (const double noise : {0.0, 1.0})
+                expect_filled(ratio, test::two_cameras(ratio.x, ratio.y, random), slant, noise, random);
+        }
+    }
+}
+
+TEST(Registration, ATurnedColourCameraHasNoHoles) {
+    Random random(6);
+    for (const double turn : {0.04, 0.08, 0.3, 0.8, 1.57}) {
+        for (const double ratio : {0.5, 0.9, 1.0, 1.2, 1.6}) {
+            CameraInfo info = test::two_cameras(ratio, ratio, random, 0.03, 0.0);
+            info.color_from_depth.linear() = so3_exp({0, 0, turn});
+            expect_filled({ratio, ratio}, info, 0.3, 1.0, random);
+        }
+    }
+}
+
+TEST(Registration, ASurfaceThatTheBaselineStretchesHasNoHoles) {
+    Random random(7);
+    for (const double ratio : {1.0, 1.1, 1.25}) {
+        CameraInfo info = test::two_cameras(ratio, ratio, random, 0.0, 0.0);
+        info.color_from_depth.translation() = Eigen::Vector3d(-0.06, 0, 0);
+        info.depth_min_m = 0.1;
+        // A wall beside the cameras, 0.4 m from them: the colour camera sees it 15 % wider.
+        const Eigen::Vector3d normal(-std::cos(0.25), 0, -std::sin(0.25));
+        const test::Scene scene = test::Scene::of({normal, 0.4});
+        const test::Sensed sensed = test::sense(scene, info, 0.3, random);
+        const test::Registered result =
+            test::compare(scene, info, sensed, register_depth(sensed.depth, info));
+        EXPECT_GT(result.inside, 500) << ratio;
+        EXPECT_LE(result.holes, 0.02 * result.inside) << ratio;
+        EXPECT_EQ(result.beyond, 0) << ratio;
+    }
+}
+
+TEST(Registration, AGrazingFloorIsWhole) {
+    Random random(8);
+    for (const double ratio : {0.3, 0.62, 1.0, 2.0, 4.0}) {
+        const CameraInfo info = test::two_cameras(ratio, ratio, random, 0.02, 0.0);
+        const test::Scene scene =
+            test::Scene::of({{0, -1, 0}, 0.25});  // under a low robot, seen until depth_max_m
+        const test::Sensed sensed = test::sense(scene, info, 0.5, random);
+        const test::Registered result =
+            test::compare(scene, info, sensed, register_depth(sensed.depth, info));
+        EXPECT_GT(result.inside, info.color.width * info.color.height / 5) << ratio;
+        EXPECT_LE(result.holes, 0.02 * result.inside) << ratio;
+        EXPECT_EQ(result.beyond, 0) << ratio;
+        // Where pixels are as coarse as readings a row's depth stands for the whole pixel.
+        EXPECT_LT(result.rms, ratio == 1 ? 2 : 1) << "ratio " << ratio << ", mean " << result.mean;
+        EXPECT_LT(std::abs(result.mean), ratio == 1 ? 0.6 : 0.2) << ratio;
+    }
+}
+
+TEST(Registration, ManyReadingsAPixelAreAveragedNotTheNearestTaken) {
+    Random random(9);
+    CameraInfo info = test::two_cameras(4, 4, random, 0.0, 0.0);
+    const test::Scene wall = test::Scene::of({{0, 0, -1}, 3});
+    const test::Sensed sensed = test::sense(wall, info, 1, random);
+    const test::Registered result = test::compare(wall, info, sensed, register_depth(sensed.depth, info));
+    EXPECT_LT(std::abs(result.mean), 0.1);
+    EXPECT_LT(result.rms, 0.5) << "the mean of 16";
+}
+
+TEST(Registration, AMixedReadingIsNotABridge) {
+    // Half of a reading at an edge saw the front and half the back: it is none of both, and nothing is filled
+    // between them but its own footprint.
+    Random random(10);
+    CameraInfo info = test::two_cameras(0.5, 0.5, random, 0.0, 0.0);
+    info.color_from_depth.translation() = Eigen::Vector3d(-0.05, 0, 0);
+    DepthImage depth(info.depth.width, info.depth.height);
+    for (int v = 0; v < depth.height; ++v) {
+        for (int u = 0; u < depth.width; ++u) depth(u, v) = u < 100 ? 5000 : u == 100 ? 7500 : 15000;
+    }
+    const DepthImage registered = register_depth(depth, info);
+    const int line = registered.height / 2;
+    int mixed = 0;
+    for (int u = 0; u < registered.width; ++u)
+        mixed += registered(u, line) > 5300 && registered(u, line) < 14500;
+    EXPECT_GE(mixed, 1);
+    EXPECT_LE(mixed, 3);
+}
+
+TEST(Registration, AHostileTransformCostsNoMoreThanAnother) {
+    // Each reading would fill the whole colour image.
+    CameraInfo info;
+    info.depth = {320, 240, 300, 300, 160, 120};
+    info.color = {900, 700, 900, 900, 450, 350};
+    info.registered = false;
+    info.color_from_depth.translation().z() = -0.999;
+    const DepthImage registered = register_depth(DepthImage(320, 240, 1000), info);
+    EXPECT_EQ(registered.width, 900);
 }
 
 TEST(Registration, InvalidDepthStaysInvalid) {
