@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <numbers>
-#include <sstream>
 #include <stdexcept>
 
 #include "core/validation.hpp"
@@ -49,12 +48,6 @@ DepthImage inflated(const std::string& bytes, int width, int height) {
 
 octomap::point3d point3d(const Eigen::Vector3d& p) {
     return {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())};
-}
-
-/// What OctoMap's own write() and writeBinary() begin with; they are not used because they print.
-void write_header(std::ostream& out, const char* kind, const octomap::OcTree& tree) {
-    out << kind << "\n# (feel free to add / change comments, but leave the first line as it is!)\n#\nid "
-        << tree.getTreeType() << "\nsize " << tree.size() << "\nres " << tree.getResolution() << "\ndata\n";
 }
 
 }  // namespace
@@ -157,38 +150,6 @@ void OctomapBuilder::freeze_oldest() {
     ++frozen_;
 }
 
-OctomapSizes OctomapBuilder::sizes() const {
-    OctomapSizes sizes;
-    sizes.memory_bytes = tree_->memoryUsage();
-    sizes.bt_bytes = bt().size();
-    sizes.ot_bytes = ot().size();
-    sizes.nodes = tree_->size();
-    for (auto leaf = tree_->begin_leafs(), end = tree_->end_leafs(); leaf != end; ++leaf) {
-        ++sizes.leaves;
-        if (!tree_->isNodeOccupied(*leaf)) continue;
-        ++sizes.occupied_leaves;
-        sizes.occupied_voxels += std::size_t{1} << 3 * (tree_->getTreeDepth() - leaf.getDepth());
-    }
-    return sizes;
-}
-
-std::string OctomapBuilder::bt() const {
-    octomap::OcTree likely(*tree_);
-    likely.toMaxLikelihood();
-    likely.prune();
-    std::ostringstream out;
-    write_header(out, "# Octomap OcTree binary file", likely);
-    if (likely.size() > 0) likely.writeBinaryData(out);
-    return std::move(out).str();
-}
-
-std::string OctomapBuilder::ot() const {
-    std::ostringstream out;
-    write_header(out, "# Octomap OcTree file", *tree_);
-    tree_->writeData(out);
-    return std::move(out).str();
-}
-
 std::vector<Eigen::Vector3d> OctomapBuilder::occupied_voxels() const {
     std::vector<Eigen::Vector3d> centres;
     const double edge = options_.resolution_m;
@@ -220,6 +181,11 @@ std::size_t OctomapBuilder::stored_bytes() const {
     std::size_t bytes = 0;
     for (const auto& [id, stored] : keyframes_) bytes += sizeof stored + stored.deflated.capacity();
     return bytes;
+}
+
+std::size_t OctomapBuilder::working_bytes() const {
+    return tree_->memoryUsage() + (base_ ? base_->memoryUsage() : 0) + stored_bytes() +
+           inserter_.memory_bytes();
 }
 
 }  // namespace planemap

@@ -12,6 +12,7 @@
 #include "core/camera.hpp"
 #include "core/image.hpp"
 #include "core/keyframe.hpp"
+#include "octomap/octomap_sizes.hpp"
 #include "octomap/scan_insertion.hpp"
 
 namespace planemap {
@@ -28,17 +29,6 @@ struct OctomapOptions {
 
     /// Throws std::invalid_argument that names every bad field.
     void validate() const;
-};
-
-/// How large an OctoMap is.
-struct OctomapSizes {
-    std::size_t memory_bytes = 0;     ///< OctoMap's own OcTree::memoryUsage()
-    std::size_t bt_bytes = 0;         ///< of the binary, maximum likelihood file
-    std::size_t ot_bytes = 0;         ///< of the full file
-    std::size_t nodes = 0;            ///< all
-    std::size_t leaves = 0;           ///< pruned ones count once
-    std::size_t occupied_leaves = 0;  ///< pruned ones count once
-    std::size_t occupied_voxels = 0;  ///< occupied volume over the volume of the smallest leaf
 };
 
 /// Builds an OctoMap from the keyframes' depth images, beside the map of planes, and rebuilds it when the
@@ -66,11 +56,11 @@ class OctomapBuilder {
     /// The tree as of the last flush().
     const octomap::OcTree& tree() const { return *tree_; }
     /// Sizes of the tree as of the last flush().
-    OctomapSizes sizes() const;
+    OctomapSizes sizes() const { return sizes_of(*tree_); }
     /// The bytes of a .bt file: maximum likelihood, pruned.
-    std::string bt() const;
+    std::string bt() const { return bt_of(*tree_); }
     /// The bytes of an .ot file.
-    std::string ot() const;
+    std::string ot() const { return ot_of(*tree_); }
     /// Centres of all occupied cells of the smallest leaf's size, world frame, metres.
     std::vector<Eigen::Vector3d> occupied_voxels() const;
 
@@ -80,6 +70,9 @@ class OctomapBuilder {
 
     /// Bytes of the depth images kept for rebuilding.
     std::size_t stored_bytes() const;
+    /// What it takes to go on building: the tree, the tree of the frozen keyframes, the depth images kept and
+    /// the scratch memory of a scan. A walk over the trees: not for every message.
+    std::size_t working_bytes() const;
     /// Keyframes whose depth is no longer kept.
     std::size_t frozen() const { return frozen_; }
     /// How often the tree was rebuilt.

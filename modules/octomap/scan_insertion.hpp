@@ -20,6 +20,11 @@ class ScanInserter {
     void insert(octomap::OcTree& tree, std::span<const octomap::point3d> points,
                 const octomap::point3d& origin, double max_range);
 
+    /// Of the cells of the largest scan so far, kept for the next one.
+    std::size_t memory_bytes() const {
+        return ends_.memory_bytes() + free_.memory_bytes() + occupied_.memory_bytes();
+    }
+
   private:
     void trace_rays(const octomap::OcTree& tree, const octomap::point3d& origin, double max_range);
 

@@ -37,6 +37,10 @@ class VoxelSet {
         return slots_[slot] != 0 && (bits_[slots_[slot] - 1][word_of(v)] & bit_of(v)) != 0;
     }
     std::size_t size() const { return size_; }
+    std::size_t memory_bytes() const {
+        return slots_.capacity() * sizeof slots_[0] + keys_.capacity() * sizeof keys_[0] +
+               bits_.capacity() * sizeof bits_[0];
+    }
     /// Empties the set and keeps its memory.
     void clear();
 

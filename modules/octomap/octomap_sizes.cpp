@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "octomap/octomap_sizes.hpp"
+
+#include <sstream>
+
+namespace planemap {
+
+namespace {
+
+constexpr char kBtKind[] = "# Octomap OcTree binary file", kOtKind[] = "# Octomap OcTree file";
+
+/// What OctoMap's own write() and writeBinary() begin with; they are not used because they print.
+std::string header(const char* kind, const octomap::OcTree& tree, std::size_t nodes) {
+    std::ostringstream out;
+    out << kind << "\n# (feel free to add / change comments, but leave the first line as it is!)\n#\nid "
+        << tree.getTreeType() << "\nsize " << nodes << "\nres " << tree.getResolution() << "\ndata\n";
+    return std::move(out).str();
+}
+
+/// A tree's nodes by kind.
+struct Nodes {
+    std::size_t inner = 0, leaves = 0;
+    std::size_t count() const { return inner + leaves; }
+    std::size_t memory_bytes(const octomap::OcTree& tree) const {
+        using Tree = octomap::OcTreeBaseImpl<octomap::OcTreeNode, octomap::AbstractOccupancyOcTree>;
+        return sizeof(Tree) + tree.memoryUsageNode() * count() + inner * sizeof(octomap::OcTreeNode* [8]);
+    }
+    /// A .bt file holds two bytes an inner node, and says nothing more of leaves.
+    std::size_t bt_bytes(const octomap::OcTree& tree) const {
+        return header(kBtKind, tree, count()).size() + 2 * inner;
+    }
+};
+
+/// One walk over a tree counts it, the tree that its .bt file holds, and the occupied part of that.
+class Census {
+  public:
+    explicit Census(const octomap::OcTree& tree) : tree_(tree) {
+        if (tree.getRoot() != nullptr) count_inner(tree.getRoot(), 0);
+    }
+
+    OctomapSizes sizes() const {
+        OctomapSizes sizes;
+        sizes.memory_bytes = whole_.memory_bytes(tree_);
+        sizes.bt_bytes = likely_.bt_bytes(tree_);
+        sizes.bt_loaded_memory_bytes = likely_.memory_bytes(tree_);
+        sizes.bt_occupied_bytes = occupied_.bt_bytes(tree_);
+        // A float and a byte that says which children there are.
+        sizes.ot_bytes = header(kOtKind, tree_, whole_.count()).size() + 5 * whole_.count();
+        sizes.nodes = whole_.count();
+        sizes.leaves = whole_.leaves;
+        sizes.occupied_leaves = occupied_leaves_;
+        sizes.occupied_voxels = occupied_voxels_;
+        return sizes;
+    }
+
+  private:
+    /// What a node is once each leaf is either free or occupied and equal siblings are one.
+    struct Likely {
+        bool is_leaf, holds_occupied;
+    };
+
+    Likely count(const octomap::OcTreeNode* node, unsigned depth) {
+        if (tree_.nodeHasChildren(node)) return count_inner(node, depth);
+        const bool occupied = tree_.isNodeOccupied(node);
+        ++whole_.leaves;
+        occupied_leaves_ += occupied;
+        if (occupied) occupied_voxels_ += std::size_t{1} << 3 * (tree_.getTreeDepth() - depth);
+        return {true, occupied};
+    }
+
+    Likely count_inner(const octomap::OcTreeNode* node, unsigned depth) {
+        ++whole_.inner;
+        std::size_t leaves = 0, occupied_leaves = 0;
+        bool holds_occupied = false;
+        for (unsigned i = 0; i < 8; ++i) {
+            if (!tree_.nodeChildExists(node, i)) continue;
+            const Likely child = count(tree_.getNodeChild(node, i), depth + 1);
+            leaves += child.is_leaf;
+            occupied_leaves += child.is_leaf && child.holds_occupied;
+            holds_occupied = holds_occupied || child.holds_occupied;
+        }
+        // The root stays as it is: OctoMap does not prune it.
+        if (depth > 0 && leaves == 8 && (occupied_leaves == 0 || occupied_leaves == 8))
+            return {true, holds_occupied};
+        ++likely_.inner;
+        likely_.leaves += leaves;
+        occupied_.inner += holds_occupied;
+        occupied_.leaves += occupied_leaves;
+        return {false, holds_occupied};
+    }
+
+    const octomap::OcTree& tree_;
+    Nodes whole_, likely_, occupied_;
+    std::size_t occupied_leaves_ = 0, occupied_voxels_ = 0;
+};
+
+}  // namespace
+
+OctomapSizes sizes_of(const octomap::OcTree& tree) {
+    return Census(tree).sizes();
+}
+
+std::string bt_of(const octomap::OcTree& tree) {
+    octomap::OcTree likely(tree);
+    likely.toMaxLikelihood();
+    likely.prune();
+    std::ostringstream out;
+    out << header(kBtKind, likely, likely.size());
+    if (likely.size() > 0) likely.writeBinaryData(out);
+    return std::move(out).str();
+}
+
+std::string ot_of(const octomap::OcTree& tree) {
+    std::ostringstream out;
+    out << header(kOtKind, tree, tree.size());
+    tree.writeData(out);
+    return std::move(out).str();
+}
+
+}  // namespace planemap

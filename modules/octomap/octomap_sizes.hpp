@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <octomap/OcTree.h>
+
+#include <cstddef>
+#include <string>
+
+namespace planemap {
+
+/// How large an OctoMap is: as it is worked on, as a file, and as that file when it is loaded again.
+struct OctomapSizes {
+    std::size_t memory_bytes = 0;  ///< OctoMap's own OcTree::memoryUsage() of the tree that is built
+    std::size_t bt_bytes = 0;      ///< of the binary, maximum likelihood file
+    std::size_t bt_loaded_memory_bytes = 0;  ///< OcTree::memoryUsage() of that file when it is read again
+    std::size_t bt_occupied_bytes = 0;  ///< of a binary file with the occupied space only, free space left
+                                        ///< out as if it were not known
+    std::size_t ot_bytes = 0;           ///< of the full file
+    std::size_t nodes = 0;              ///< all
+    std::size_t leaves = 0;             ///< pruned ones count once
+    std::size_t occupied_leaves = 0;    ///< pruned ones count once
+    std::size_t occupied_voxels = 0;    ///< occupied volume over the volume of the smallest leaf
+};
+
+/// Counts one pass over the tree; nothing is copied or written. Precondition: the tree is pruned and its
+/// inner nodes are up to date.
+OctomapSizes sizes_of(const octomap::OcTree& tree);
+
+/// The bytes of a .bt file: maximum likelihood, pruned.
+std::string bt_of(const octomap::OcTree& tree);
+/// The bytes of an .ot file.
+std::string ot_of(const octomap::OcTree& tree);
+
+}  // namespace planemap

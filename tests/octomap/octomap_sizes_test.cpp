@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "octomap/octomap_sizes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <sstream>
+
+namespace planemap {
+namespace {
+
+/// Random cells, and two blocks whose cells are all free or all occupied: leaves of several sizes.
+octomap::OcTree random_tree(std::uint64_t seed) {
+    std::mt19937_64 random(seed);
+    octomap::OcTree tree(0.05);
+    std::uniform_int_distribution<int> at(32700, 32800), hit(0, 3);
+    const auto key = [](int x, int y, int z) {
+        return octomap::OcTreeKey(static_cast<octomap::key_type>(x), static_cast<octomap::key_type>(y),
+                                  static_cast<octomap::key_type>(z));
+    };
+    for (int i = 0; i < 30000; ++i) {
+        const auto k = key(at(random) / 3, at(random) / 2, at(random) / 4);
+        tree.updateNode(k, hit(random) == 0, true);
+    }
+    for (int i = 0; i < 16 * 16 * 16; ++i) {
+        // Some of them twice: equal in a .bt file, and not yet in the tree.
+        for (int time = 0; time <= i % 5 / 4; ++time)
+            tree.updateNode(key(32868 + i % 16, 32868 + i / 16 % 16, 32868 + i / 256), i / 256 < 8, true);
+    }
+    tree.updateInnerOccupancy();
+    tree.prune();
+    return tree;
+}
+
+/// As OctoMap itself reads a .bt file.
+std::unique_ptr<octomap::OcTree> loaded(const std::string& bt) {
+    auto tree = std::make_unique<octomap::OcTree>(0.05);
+    std::istringstream in(bt);
+    EXPECT_TRUE(tree->readBinary(in));
+    return tree;
+}
+
+TEST(OctomapSizes, AreThoseThatOctoMapItselfGives) {
+    for (const std::uint64_t seed : {1, 2, 3}) {
+        const octomap::OcTree tree = random_tree(seed);
+        const OctomapSizes sizes = sizes_of(tree);
+        EXPECT_EQ(sizes.memory_bytes, tree.memoryUsage());
+        EXPECT_EQ(sizes.nodes, tree.size());
+        EXPECT_EQ(sizes.leaves, tree.getNumLeafNodes());
+        EXPECT_EQ(sizes.bt_bytes, bt_of(tree).size());
+        EXPECT_EQ(sizes.ot_bytes, ot_of(tree).size());
+        EXPECT_EQ(sizes.bt_loaded_memory_bytes, loaded(bt_of(tree))->memoryUsage());
+        EXPECT_LT(sizes.bt_loaded_memory_bytes, sizes.memory_bytes);
+    }
+}
+
+TEST(OctomapSizes, TheOccupiedPartIsTheFileWithoutFreeSpace) {
+    const octomap::OcTree tree = random_tree(4);
+    const auto likely = loaded(bt_of(tree));
+    octomap::OcTree occupied(0.05);
+    for (auto leaf = likely->begin_leafs(), end = likely->end_leafs(); leaf != end; ++leaf) {
+        if (!likely->isNodeOccupied(*leaf)) continue;
+        const int n = 1 << (likely->getTreeDepth() - leaf.getDepth());
+        const octomap::OcTreeKey low = leaf.getIndexKey();
+        for (int i = 0; i < n * n * n; ++i) {
+            octomap::OcTreeKey key = low;
+            key[0] = static_cast<octomap::key_type>(key[0] + i % n);
+            key[1] = static_cast<octomap::key_type>(key[1] + i / n % n);
+            key[2] = static_cast<octomap::key_type>(key[2] + i / (n * n));
+            occupied.updateNode(key, true, true);
+        }
+    }
+    occupied.updateInnerOccupancy();
+    occupied.prune();
+    const OctomapSizes sizes = sizes_of(tree);
+    EXPECT_EQ(sizes.bt_occupied_bytes, bt_of(occupied).size());
+    EXPECT_LT(sizes.bt_occupied_bytes, sizes.bt_bytes);
+}
+
+TEST(OctomapSizes, OfAnEmptyTreeAreItsHeaders) {
+    const octomap::OcTree tree(0.05);
+    const OctomapSizes sizes = sizes_of(tree);
+    EXPECT_EQ(sizes.memory_bytes, tree.memoryUsage());
+    EXPECT_EQ(sizes.nodes, 0u);
+    EXPECT_EQ(sizes.bt_bytes, bt_of(tree).size());
+    EXPECT_EQ(sizes.bt_occupied_bytes, bt_of(tree).size());
+    EXPECT_EQ(sizes.ot_bytes, ot_of(tree).size());
+}
+
+}  // namespace
+}  // namespace planemap
