@@ -34,6 +34,7 @@ bool OctomapBuilder::add(int keyframe_id, const DepthImage& depth, const CameraI
     if (!rebuild_due()) {
         while (insert_next({})) continue;
     }
+    while (is_full()) freeze_oldest({});
     return true;
 }
 
@@ -44,7 +45,6 @@ bool OctomapBuilder::keep(int keyframe_id, std::shared_ptr<const StoredScan> sca
     keyframe.scan = std::move(scan);
     keyframe.world_from_camera = world_from_camera;
     if (last_inserted_ && keyframe_id <= *last_inserted_) mark_misplaced(keyframe);
-    if (keyframes_.size() > options_.max_keyframes) freeze_oldest();
     return true;
 }
 
@@ -80,6 +80,11 @@ void OctomapBuilder::flush() {
 }
 
 bool OctomapBuilder::advance(bool may_rebuild, const std::stop_token& stop) {
+    // First what bounds the memory; but a keyframe goes into the tree before it is frozen.
+    if (is_full() && last_inserted_ && keyframes_.begin()->first <= *last_inserted_) {
+        freeze_oldest(stop);
+        return true;
+    }
     return insert_next(stop) || (may_rebuild && rebuild_next(stop));
 }
 
@@ -87,6 +92,11 @@ void OctomapBuilder::tidy(const std::stop_token& stop) {
     if (!stale_) return;
     bring_up_to_date(*tree_, stop);
     stale_ = false;
+}
+
+std::size_t OctomapBuilder::waiting() const {
+    const auto next = last_inserted_ ? keyframes_.upper_bound(*last_inserted_) : keyframes_.begin();
+    return static_cast<std::size_t>(std::distance(next, keyframes_.end()));
 }
 
 std::size_t OctomapBuilder::keyframes_in_tree() const {
@@ -211,12 +221,12 @@ void OctomapBuilder::end_rebuild() {
     ++rebuilds_;
 }
 
-void OctomapBuilder::freeze_oldest() {
+void OctomapBuilder::freeze_oldest(const std::stop_token& stop) {
     const auto oldest = keyframes_.begin();
     const Keyframe& keyframe = oldest->second;
     if (!base_) base_ = std::make_unique<octomap::OcTree>(options_.resolution_m);
-    trace(*keyframe.scan, keyframe.world_from_camera, {});
-    inserter_.apply(*base_);
+    trace(*keyframe.scan, keyframe.world_from_camera, stop);
+    inserter_.apply(*base_, nullptr, stop);
     if (!keyframe.inside || keyframe.misplaced) {
         // The tree does not hold it, or where it was: the blocks of both places are built anew from base_.
         mark_dirty(keyframe.blocks);

@@ -63,21 +63,18 @@ class OctomapBuilder {
     /// Rebuilds if it is due, and brings inner nodes up to date and prunes.
     void flush();
 
-    /// add() without touching the tree: advance() will. (To freeze the oldest keyframe takes as long as to
-    /// insert one.)
+    /// add() without touching the tree: advance() will.
     bool keep(int keyframe_id, std::shared_ptr<const StoredScan> scan, const Pose& world_from_camera);
-    /// Does one piece of what is due, about the work of one scan: first new keyframes, then, if
-    /// `may_rebuild`, the rebuild. Returns false when there was nothing to do. After a stop was requested the
-    /// tree is not whole: the builder can only be destroyed.
+    /// Does one piece of what is due, about the work of one scan: freezes what is too much, inserts a new
+    /// keyframe, or, if `may_rebuild`, goes on with the rebuild. Returns false when there was nothing to do.
+    /// After a stop was requested the tree is not whole: the builder can only be destroyed.
     bool advance(bool may_rebuild, const std::stop_token& stop = {});
     /// Brings inner nodes up to date and prunes; what is not in the tree yet stays out of it.
     void tidy(const std::stop_token& stop = {});
     /// True while some keyframe in the tree is not where it should be.
     bool rebuild_due() const { return rebuild_ || misplaced_ > 0 || dirty_.size() > 0; }
-    /// True while some keyframe is kept and not in the tree yet.
-    bool insertion_due() const {
-        return !keyframes_.empty() && (!last_inserted_ || keyframes_.rbegin()->first > *last_inserted_);
-    }
+    /// Keyframes that are kept and not in the tree yet.
+    std::size_t waiting() const;
     /// Keyframes in the tree, frozen ones included.
     std::size_t keyframes_in_tree() const;
 
@@ -144,7 +141,8 @@ class OctomapBuilder {
     void insert_again(Planned& planned, const std::stop_token& stop);
     void end_rebuild();
     void trace(const StoredScan& scan, const Pose& world_from_camera, const std::stop_token& stop);
-    void freeze_oldest();
+    bool is_full() const { return keyframes_.size() > options_.max_keyframes; }
+    void freeze_oldest(const std::stop_token& stop);
     void mark_misplaced(Keyframe& keyframe);
     void mark_dirty(const std::vector<Voxel>& blocks);
 

@@ -89,7 +89,8 @@ void OctomapShell::on_trajectory(const RawMessage& message) {
 
 void OctomapShell::add(int id, const Waiting& keyframe, const Pose& world_from_camera) {
     if (worker_) {
-        worker_->add(id, keyframe.scan, world_from_camera);
+        if (!worker_->add(id, keyframe.scan, world_from_camera))
+            return drop("keyframes that the OctoMap was too slow for");
         return status_.published();
     }
     const DepthImage& depth = keyframe.frame->depth();

@@ -10,23 +10,27 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kStatePeriod = 5s;
+constexpr auto kFirstState = 1s, kStatePeriod = 5s;
 constexpr int kStateShare = 20;  ///< of the thread's time, the part that states may take
 
 }  // namespace
 
 OctomapWorker::OctomapWorker(OctomapBuilder& builder)
-    : builder_(builder), thread_([this](const std::stop_token& stop) { run(stop); }) {}
+    : builder_(builder),
+      next_state_(Clock::now() + kFirstState),
+      thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
 OctomapWorker::~OctomapWorker() = default;
 
-void OctomapWorker::add(int keyframe_id, std::shared_ptr<const StoredScan> scan,
+bool OctomapWorker::add(int keyframe_id, std::shared_ptr<const StoredScan> scan,
                         const Pose& world_from_camera) {
     {
         const std::lock_guard lock(mutex_);
+        if (given_.size() + waiting_ >= kMaxWaiting) return false;
         given_.push_back({keyframe_id, std::move(scan), world_from_camera});
     }
     changed_.notify_all();
+    return true;
 }
 
 void OctomapWorker::update(KeyframeTrajectory trajectory) {
@@ -85,6 +89,7 @@ void OctomapWorker::take_in() {
         given.swap(given_);
         trajectory = std::exchange(trajectory_, std::nullopt);
         hurried_ = finishing_;
+        waiting_ = builder_.waiting() + given.size();
     }
     for (Given& g : given) {
         if (!builder_.keep(g.keyframe_id, std::move(g.scan), g.world_from_camera)) ++now_.refused;
@@ -121,7 +126,7 @@ void OctomapWorker::publish_state(const std::stop_token& stop) {
     now_.sizes = builder_.sizes();
     now_.keyframes = builder_.keyframes_in_tree();
     now_.frozen = builder_.frozen();
-    now_.is_up_to_date = !builder_.rebuild_due() && !builder_.insertion_due();
+    now_.is_up_to_date = !builder_.rebuild_due() && builder_.waiting() == 0;
     const Clock::time_point end = Clock::now();
     next_state_ = end + std::max<Clock::duration>(kStatePeriod, kStateShare * (end - start));
     unpublished_ = false;

@@ -29,9 +29,10 @@ struct OctomapState {
 
 /// Builds an OctoMap on a thread of its own, so that whoever hears messages never waits for it. New keyframes
 /// come first; a rebuild goes on between them, scan by scan, and takes at most half of a processor's time.
-/// What is given waits in a list that keeps all: it holds what came during one piece of work.
 class OctomapWorker {
   public:
+    static constexpr std::size_t kMaxWaiting = 1024;  ///< about 150 MB
+
     /// Nobody else may use the builder while the worker lives.
     explicit OctomapWorker(OctomapBuilder& builder);
     /// Abandons what is under way, within some milliseconds: then the builder can only be destroyed.
@@ -39,7 +40,8 @@ class OctomapWorker {
     OctomapWorker(const OctomapWorker&) = delete;
     OctomapWorker& operator=(const OctomapWorker&) = delete;
 
-    void add(int keyframe_id, std::shared_ptr<const StoredScan> scan, const Pose& world_from_camera);
+    /// False, and nothing is taken, when kMaxWaiting keyframes are not in the tree yet.
+    bool add(int keyframe_id, std::shared_ptr<const StoredScan> scan, const Pose& world_from_camera);
     void update(KeyframeTrajectory trajectory);
 
     /// The newest state, once; nothing until there is a newer one: every few seconds while something changes.
@@ -68,6 +70,7 @@ class OctomapWorker {
     std::mutex mutex_;  ///< guards what follows, up to the thread's own
     std::condition_variable_any changed_;
     std::vector<Given> given_;
+    std::size_t waiting_ = 0;  ///< keyframes that the builder holds and has not inserted
     std::optional<KeyframeTrajectory> trajectory_;
     std::optional<OctomapState> state_;
     std::exception_ptr failure_;
