@@ -7,6 +7,6 @@ int main(int argc, char** argv) {
     add_flags(process.flags(), options);
     return process.run(argc, argv, [&](planemap::Bus& bus) {
         return std::make_unique<planemap::OctomapShell>(bus, std::make_shared<planemap::FrameDecoder>(bus),
-                                                        options);
+                                                        options, planemap::Building::kInBackground);
     });
 }

@@ -1,56 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "octomap/octomap_builder.hpp"
 
-#include <libdeflate.h>
-
+#include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <stdexcept>
+#include <utility>
 
 #include "core/validation.hpp"
 
 namespace planemap {
-
-namespace {
-
-using Compressor = std::unique_ptr<libdeflate_compressor, decltype(&libdeflate_free_compressor)>;
-using Decompressor = std::unique_ptr<libdeflate_decompressor, decltype(&libdeflate_free_decompressor)>;
-
-/// The pixels as a deflate stream, each row as differences from pixel to pixel: half the size, and as fast.
-std::string deflated(const DepthImage& depth) {
-    DepthImage steps = depth;
-    for (int v = 0; v < steps.height; ++v) {
-        std::uint16_t* row = steps.row(v);
-        for (int u = steps.width - 1; u > 0; --u) row[u] = static_cast<std::uint16_t>(row[u] - row[u - 1]);
-    }
-    const Compressor compressor(libdeflate_alloc_compressor(1), libdeflate_free_compressor);
-    const std::size_t size = steps.pixels.size() * sizeof(std::uint16_t);
-    std::string bytes(libdeflate_deflate_compress_bound(compressor.get(), size), '\0');
-    bytes.resize(
-        libdeflate_deflate_compress(compressor.get(), steps.pixels.data(), size, bytes.data(), bytes.size()));
-    bytes.shrink_to_fit();
-    return bytes;
-}
-
-DepthImage inflated(const std::string& bytes, int width, int height) {
-    DepthImage depth(width, height);
-    const Decompressor decompressor(libdeflate_alloc_decompressor(), libdeflate_free_decompressor);
-    const auto result =
-        libdeflate_deflate_decompress(decompressor.get(), bytes.data(), bytes.size(), depth.pixels.data(),
-                                      depth.pixels.size() * sizeof(std::uint16_t), nullptr);
-    if (result != LIBDEFLATE_SUCCESS) throw std::logic_error("OctomapBuilder: stored depth does not inflate");
-    for (int v = 0; v < height; ++v) {
-        std::uint16_t* row = depth.row(v);
-        for (int u = 1; u < width; ++u) row[u] = static_cast<std::uint16_t>(row[u] + row[u - 1]);
-    }
-    return depth;
-}
-
-octomap::point3d point3d(const Eigen::Vector3d& p) {
-    return {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())};
-}
-
-}  // namespace
 
 void OctomapOptions::validate() const {
     FieldErrors errors("OctomapOptions");
@@ -71,19 +29,22 @@ OctomapBuilder::OctomapBuilder(OctomapOptions options) : options_(options) {
 bool OctomapBuilder::add(int keyframe_id, const DepthImage& depth, const CameraInfo& camera,
                          const Pose& world_from_camera) {
     camera.validate();
-    if (depth.width != camera.depth.width || depth.height != camera.depth.height ||
-        !is_valid(world_from_camera)) {
-        return false;
+    if (depth.width != camera.depth.width || depth.height != camera.depth.height) return false;
+    if (!keep(keyframe_id, std::make_shared<StoredScan>(depth, camera), world_from_camera)) return false;
+    if (!rebuild_due()) {
+        while (insert_next({})) continue;
     }
-    const bool in_order = keyframes_.empty() || keyframes_.rbegin()->first < keyframe_id;
-    const Stored& stored = keyframes_[keyframe_id] = {camera, deflated(depth), world_from_camera};
-    if (in_order && !rebuild_due_) {
-        insert(*tree_, stored);
-    } else {
-        rebuild_due_ = true;
-    }
-    stale_ = true;
-    if (keyframes_.size() > options_.max_keyframes) freeze_oldest();
+    while (is_full()) freeze_oldest({});
+    return true;
+}
+
+bool OctomapBuilder::keep(int keyframe_id, std::shared_ptr<const StoredScan> scan,
+                          const Pose& world_from_camera) {
+    if (!is_valid(world_from_camera) || (last_frozen_ && keyframe_id <= *last_frozen_)) return false;
+    Keyframe& keyframe = keyframes_[keyframe_id];
+    keyframe.scan = std::move(scan);
+    keyframe.world_from_camera = world_from_camera;
+    if (last_inserted_ && keyframe_id <= *last_inserted_) mark_misplaced(keyframe);
     return true;
 }
 
@@ -91,61 +52,192 @@ bool OctomapBuilder::update(const KeyframeTrajectory& trajectory) {
     for (const KeyframePose& named : trajectory.keyframes) {
         const auto found = keyframes_.find(named.id);
         if (found == keyframes_.end() || !is_valid(named.world_from_camera)) continue;
-        Pose& world_from_camera = found->second.world_from_camera;
-        const Pose change = world_from_camera.inverse(Eigen::Isometry) * named.world_from_camera;
+        Keyframe& keyframe = found->second;
+        const Pose change = keyframe.world_from_camera.inverse(Eigen::Isometry) * named.world_from_camera;
         if (change.translation().norm() <= options_.moved_m &&
             rotation_angle(change) <= options_.moved_deg * std::numbers::pi / 180) {
             continue;
         }
-        world_from_camera = named.world_from_camera;
-        rebuild_due_ = true;
+        keyframe.world_from_camera = named.world_from_camera;
+        if (keyframe.inside) mark_misplaced(keyframe);
     }
-    return rebuild_due_;
+    return rebuild_due();
+}
+
+void OctomapBuilder::mark_misplaced(Keyframe& keyframe) {
+    misplaced_ += !keyframe.misplaced;
+    keyframe.misplaced = true;
+}
+
+void OctomapBuilder::mark_dirty(const std::vector<Voxel>& blocks) {
+    for (const Voxel& block : blocks) dirty_.insert(block);
 }
 
 void OctomapBuilder::flush() {
-    if (rebuild_due_) {
-        tree_ = base_ ? std::make_unique<octomap::OcTree>(*base_)
-                      : std::make_unique<octomap::OcTree>(options_.resolution_m);
-        for (const auto& [id, stored] : keyframes_) insert(*tree_, stored);
-        rebuild_due_ = false;
-        stale_ = true;
-        ++rebuilds_;
+    while (rebuild_next({})) continue;
+    while (insert_next({})) continue;
+    tidy();
+}
+
+bool OctomapBuilder::advance(bool may_rebuild, const std::stop_token& stop) {
+    // First what bounds the memory; but a keyframe goes into the tree before it is frozen.
+    if (is_full() && last_inserted_ && keyframes_.begin()->first <= *last_inserted_) {
+        freeze_oldest(stop);
+        return true;
     }
+    return insert_next(stop) || (may_rebuild && rebuild_next(stop));
+}
+
+void OctomapBuilder::tidy(const std::stop_token& stop) {
     if (!stale_) return;
-    tree_->updateInnerOccupancy();
-    tree_->prune();
+    bring_up_to_date(*tree_, stop);
     stale_ = false;
 }
 
-std::vector<octomap::point3d> OctomapBuilder::points_in_world(const Stored& stored) const {
-    const CameraInfo& camera = stored.camera;
-    const PinholeCamera& pinhole = camera.depth;
-    const DepthImage depth = inflated(stored.deflated, pinhole.width, pinhole.height);
-    const Pose world_from_depth = stored.world_from_camera * camera.color_from_depth;
-    std::vector<octomap::point3d> points;
-    points.reserve(depth.pixels.size() / static_cast<std::size_t>(options_.subsample * options_.subsample));
-    for (int v = 0; v < depth.height; v += options_.subsample) {
-        for (int u = 0; u < depth.width; u += options_.subsample) {
-            const std::uint16_t raw = depth(u, v);
-            const double z = camera.metres(raw);
-            if (!is_valid_depth(raw) || z < camera.depth_min_m || z > camera.depth_max_m) continue;
-            points.push_back(point3d(world_from_depth * pinhole.unproject(u, v, z)));
+std::size_t OctomapBuilder::waiting() const {
+    const auto next = last_inserted_ ? keyframes_.upper_bound(*last_inserted_) : keyframes_.begin();
+    return static_cast<std::size_t>(std::distance(next, keyframes_.end()));
+}
+
+std::size_t OctomapBuilder::keyframes_in_tree() const {
+    return frozen_ + static_cast<std::size_t>(std::count_if(keyframes_.begin(), keyframes_.end(),
+                                                            [](const auto& k) { return k.second.inside; }));
+}
+
+void OctomapBuilder::trace(const StoredScan& scan, const Pose& world_from_camera,
+                           const std::stop_token& stop) {
+    const double max_range = options_.max_range_m > 0 ? options_.max_range_m : scan.camera().depth_max_m;
+    inserter_.trace(*tree_, scan.points(world_from_camera, options_.subsample),
+                    scan.origin(world_from_camera), max_range, stop);
+}
+
+bool OctomapBuilder::insert_next(const std::stop_token& stop) {
+    const auto next = last_inserted_ ? keyframes_.upper_bound(*last_inserted_) : keyframes_.begin();
+    if (next == keyframes_.end()) return false;
+    Keyframe& keyframe = next->second;
+    trace(*keyframe.scan, keyframe.world_from_camera, stop);
+    inserter_.apply(*tree_, nullptr, stop);
+    keyframe.blocks = inserter_.blocks();
+    keyframe.inside = true;
+    last_inserted_ = next->first;
+    stale_ = true;
+    if (rebuild_) {
+        rebuild_->plan.push_back({next->first, keyframe.scan, keyframe.world_from_camera, keyframe.blocks});
+        rebuild_->plan.back().is_new = rebuild_->tree != nullptr;
+    }
+    return true;
+}
+
+bool OctomapBuilder::rebuild_next(const std::stop_token& stop) {
+    if (!rebuild_due()) return false;
+    if (!rebuild_) {
+        begin_rebuild();
+        return true;
+    }
+    Rebuild& rebuild = *rebuild_;
+    const auto to_survey = std::find_if(rebuild.plan.begin() + rebuild.surveyed, rebuild.plan.end(),
+                                        [](const Planned& planned) { return planned.moved; });
+    rebuild.surveyed = to_survey - rebuild.plan.begin();
+    if (rebuild.tree == nullptr && !rebuild.everything && to_survey != rebuild.plan.end()) {
+        survey(*to_survey, stop);
+    } else if (rebuild.tree == nullptr) {
+        begin_tree(stop);
+    } else {
+        const auto to_insert = std::find_if(rebuild.plan.begin() + rebuild.inserted, rebuild.plan.end(),
+                                            [&](const Planned& planned) { return is_touched(planned); });
+        rebuild.inserted = to_insert - rebuild.plan.begin();
+        if (to_insert == rebuild.plan.end()) {
+            end_rebuild();
+        } else {
+            insert_again(*to_insert, stop);
         }
     }
-    return points;
+    return true;
 }
 
-void OctomapBuilder::insert(octomap::OcTree& tree, const Stored& stored) {
-    const Pose world_from_depth = stored.world_from_camera * stored.camera.color_from_depth;
-    const double max_range = options_.max_range_m > 0 ? options_.max_range_m : stored.camera.depth_max_m;
-    inserter_.insert(tree, points_in_world(stored), point3d(world_from_depth.translation()), max_range);
+/// From here on, "misplaced" says what is to be done after this rebuild.
+void OctomapBuilder::begin_rebuild() {
+    Rebuild& rebuild = rebuild_.emplace();
+    // When most of them moved, to look for what they did not touch costs more than it saves.
+    rebuild.everything = 2 * misplaced_ > keyframes_.size();
+    std::swap(rebuild.dirty, dirty_);
+    for (auto& [id, keyframe] : keyframes_) {
+        if (!keyframe.inside && !keyframe.misplaced) continue;  // will be inserted into both trees
+        rebuild.plan.push_back({id, keyframe.scan, keyframe.world_from_camera, keyframe.blocks});
+        rebuild.plan.back().moved = keyframe.misplaced;
+        if (!std::exchange(keyframe.misplaced, false)) continue;
+        for (const Voxel& block : keyframe.blocks) rebuild.dirty.insert(block);
+    }
+    misplaced_ = 0;
 }
 
-void OctomapBuilder::freeze_oldest() {
+void OctomapBuilder::survey(Planned& planned, const std::stop_token& stop) {
+    trace(*planned.scan, planned.world_from_camera, stop);
+    planned.blocks = inserter_.blocks();
+    planned.moved = false;
+    for (const Voxel& block : planned.blocks) rebuild_->dirty.insert(block);
+}
+
+void OctomapBuilder::begin_tree(const std::stop_token& stop) {
+    if (!rebuild_->everything) {
+        rebuild_->tree = composed(*tree_, base_.get(), rebuild_->dirty, stop);
+    } else if (base_) {
+        rebuild_->tree = std::make_unique<octomap::OcTree>(*base_);
+    } else {
+        rebuild_->tree = std::make_unique<octomap::OcTree>(options_.resolution_m);
+    }
+}
+
+bool OctomapBuilder::is_touched(const Planned& planned) const {
+    const Rebuild& rebuild = *rebuild_;
+    return rebuild.everything || planned.is_new ||
+           std::any_of(planned.blocks.begin(), planned.blocks.end(),
+                       [&](const Voxel& block) { return rebuild.dirty.contains(block); });
+}
+
+void OctomapBuilder::insert_again(Planned& planned, const std::stop_token& stop) {
+    Rebuild& rebuild = *rebuild_;
+    trace(*planned.scan, planned.world_from_camera, stop);
+    const bool whole = rebuild.everything || planned.is_new;
+    inserter_.apply(*rebuild.tree, whole ? nullptr : &rebuild.dirty, stop);
+    planned.blocks = inserter_.blocks();
+    ++rebuild.inserted;
+    ++reinserted_;
+}
+
+void OctomapBuilder::end_rebuild() {
+    tree_ = std::move(rebuild_->tree);
+    for (Planned& planned : rebuild_->plan) {
+        const auto found = keyframes_.find(planned.id);
+        if (found != keyframes_.end()) {
+            found->second.blocks = std::move(planned.blocks);
+            found->second.inside = true;
+        } else if (planned.frozen_aside) {
+            mark_dirty(planned.blocks);
+        }
+    }
+    rebuild_.reset();
+    stale_ = true;
+    ++rebuilds_;
+}
+
+void OctomapBuilder::freeze_oldest(const std::stop_token& stop) {
     const auto oldest = keyframes_.begin();
+    const Keyframe& keyframe = oldest->second;
     if (!base_) base_ = std::make_unique<octomap::OcTree>(options_.resolution_m);
-    insert(*base_, oldest->second);
+    trace(*keyframe.scan, keyframe.world_from_camera, stop);
+    inserter_.apply(*base_, nullptr, stop);
+    if (!keyframe.inside || keyframe.misplaced) {
+        // The tree does not hold it, or where it was: the blocks of both places are built anew from base_.
+        mark_dirty(keyframe.blocks);
+        mark_dirty(inserter_.blocks());
+        if (rebuild_) {
+            for (Planned& planned : rebuild_->plan)
+                planned.frozen_aside = planned.frozen_aside || planned.id == oldest->first;
+        }
+    }
+    misplaced_ -= keyframe.misplaced;
+    last_frozen_ = oldest->first;
     keyframes_.erase(oldest);
     ++frozen_;
 }
@@ -166,8 +258,9 @@ std::vector<Eigen::Vector3d> OctomapBuilder::occupied_voxels() const {
 
 std::size_t OctomapBuilder::voxel_cloud_size(double voxel_m) const {
     VoxelSet voxels;
-    for (const auto& [id, stored] : keyframes_) {
-        for (const octomap::point3d& p : points_in_world(stored)) {
+    for (const auto& [id, keyframe] : keyframes_) {
+        for (const octomap::point3d& p :
+             keyframe.scan->points(keyframe.world_from_camera, options_.subsample)) {
             const Eigen::Array3d cell = (Eigen::Array3d(p.x(), p.y(), p.z()) / voxel_m).floor();
             if (!((cell.abs() < VoxelSet::kMaxCoordinate).all())) continue;
             voxels.insert(
@@ -179,13 +272,16 @@ std::size_t OctomapBuilder::voxel_cloud_size(double voxel_m) const {
 
 std::size_t OctomapBuilder::stored_bytes() const {
     std::size_t bytes = 0;
-    for (const auto& [id, stored] : keyframes_) bytes += sizeof stored + stored.deflated.capacity();
+    for (const auto& [id, keyframe] : keyframes_)
+        bytes += sizeof keyframe + keyframe.scan->bytes() + keyframe.blocks.capacity() * sizeof(Voxel);
     return bytes;
 }
 
 std::size_t OctomapBuilder::working_bytes() const {
-    return tree_->memoryUsage() + (base_ ? base_->memoryUsage() : 0) + stored_bytes() +
-           inserter_.memory_bytes();
+    std::size_t bytes = stored_bytes() + inserter_.memory_bytes() + tree_->memoryUsage();
+    if (base_) bytes += base_->memoryUsage();
+    if (rebuild_ && rebuild_->tree) bytes += rebuild_->tree->memoryUsage();
+    return bytes;
 }
 
 }  // namespace planemap

@@ -4,46 +4,72 @@
 #include <deque>
 #include <map>
 #include <memory>
+#include <optional>
 
 #include "core/keyframe.hpp"
 #include "messages/frame_decoder.hpp"
 #include "messages/process.hpp"
 #include "octomap/octomap_builder.hpp"
+#include "octomap/octomap_worker.hpp"
 
 namespace planemap {
+
+/// Where the OctoMap is built.
+enum class Building {
+    kInHandler,     ///< as messages come; rebuilt at the end only: the same input gives the same bytes
+    kInBackground,  ///< on another thread; messages do not wait
+};
 
 /// The depth of keyframes (OPENNI_FRAME, PLANEMAP_KEYFRAME) at their poses (PLANEMAP_TRAJECTORY) into an
 /// OctoMap; its size on PLANEMAP_OCTOMAP_SIZE.
 class OctomapShell : public Shell {
   public:
-    OctomapShell(Bus& bus, std::shared_ptr<FrameDecoder> decoder, const OctomapOptions& options);
+    OctomapShell(Bus& bus, std::shared_ptr<FrameDecoder> decoder, const OctomapOptions& options,
+                 Building building = Building::kInHandler);
 
     ModuleStatus& status() override { return status_; }
     int poll() override;
-    /// Brings the tree up to date with the last trajectory and publishes all its sizes.
+    /// Brings the tree up to date with the last trajectory and publishes all its sizes. In the background it
+    /// does so for half a second at most; then the sizes are those of what the tree holds by then, which the
+    /// message and the log say.
     void finish() override;
 
+    /// Precondition: built in the handler.
     OctomapBuilder& builder() { return builder_; }
 
   private:
-    static constexpr std::size_t kRecentFrames = 16;  ///< a keyframe comes a few frames after its frame
-    static constexpr std::size_t kMaxWaiting = 64;    ///< keyframes without a pose
+    struct Recent {
+        std::shared_ptr<const Frame> frame;
+        std::size_t bytes;
+    };
+    /// A keyframe without a pose. In the background its depth is compressed at once: to do so with many
+    /// when their poses come would block.
+    struct Waiting {
+        std::shared_ptr<const Frame> frame;
+        std::shared_ptr<const StoredScan> scan;
+    };
 
     void on_frame(const RawMessage& message);
     void on_keyframe(const RawMessage& message);
     void on_trajectory(const RawMessage& message);
-    void publish_size();
+    void add(int id, const Waiting& keyframe, const Pose& world_from_camera);
+    void drop(const char* reason, std::int64_t count = 1);
+    /// In the handler: the state with everything brought up to date.
+    OctomapState state();
+    void publish(const OctomapState& state);
 
     Bus& bus_;
     std::shared_ptr<FrameDecoder> decoder_;
     OctomapBuilder builder_;
+    std::unique_ptr<OctomapWorker> worker_;  ///< null when built in the handler
     ModuleStatus status_{"octomap"};
-    std::deque<std::shared_ptr<const Frame>> recent_;
-    std::map<int, std::shared_ptr<const Frame>> waiting_;  ///< by keyframe id
+    std::deque<Recent> recent_;
+    std::size_t recent_bytes_ = 0;
+    std::map<int, Waiting> waiting_;  ///< by keyframe id
     double resolution_m_;
     std::int64_t last_utime_ = 0, last_publish_us_ = 0;
     int last_revision_ = 0;
-    std::int32_t keyframes_ = 0;
+    std::size_t frozen_ = 0, refused_ = 0;  ///< as counted in the status
     bool unpublished_ = false;
     std::int32_t seq_ = 0;
 };

@@ -47,9 +47,16 @@ class VoxelSet {
     /// Calls visit(Voxel) for each voxel, block by block in order of first insertion.
     template <typename Visit>
     void for_each(Visit visit) const {
+        for_each_where([](const Voxel&) { return true; }, visit);
+    }
+
+    /// The same for the voxels of those 8x8x8 blocks whose lowest voxel is wanted(Voxel).
+    template <typename Wanted, typename Visit>
+    void for_each_where(Wanted wanted, Visit visit) const {
         for (std::size_t i = 0; i < keys_.size(); ++i) {
             const std::uint64_t key = keys_[i];
             const Voxel low{unpack(key >> 40), unpack(key >> 20), unpack(key)};
+            if (!wanted(low)) continue;
             for (int z = 0; z < 8; ++z) {
                 for (std::uint64_t word = bits_[i][static_cast<std::size_t>(z)]; word != 0;
                      word &= word - 1) {

@@ -11,37 +11,17 @@
 #include <set>
 
 #include "core/files.hpp"
+#include "octomap/scenes.hpp"
 
 namespace planemap {
 namespace {
 
 using ::testing::HasSubstr;
 
-CameraInfo small_camera() {
-    CameraInfo camera;
-    camera.depth = camera.color = {64, 48, 52.5, 52.5, 31.5, 23.5};
-    return camera;
-}
-
-/// A wall two metres ahead with a box before it and some invalid pixels.
-DepthImage room(const CameraInfo& camera, std::uint16_t shift = 0) {
-    DepthImage depth(camera.depth.width, camera.depth.height, static_cast<std::uint16_t>(2000 + shift));
-    for (int v = 10; v < 30; ++v)
-        for (int u = 20; u < 40; ++u) depth(u, v) = static_cast<std::uint16_t>(1200 + 5 * u);
-    for (int u = 0; u < 20; ++u) depth(u, 3) = u % 2 ? 0 : 65535;
-    return depth;
-}
-
-Pose pose(double x, double angle) {
-    return make_pose({x, 0.02, -0.1},
-                     Eigen::Quaterniond(Eigen::AngleAxisd(angle, Eigen::Vector3d(0.2, 1, 0.1).normalized())));
-}
-
-KeyframeTrajectory trajectory(const std::vector<Pose>& poses) {
-    KeyframeTrajectory result;
-    for (const Pose& p : poses) result.keyframes.push_back({static_cast<int>(result.keyframes.size()), 0, p});
-    return result;
-}
+using test::pose;
+using test::room;
+using test::small_camera;
+using test::trajectory;
 
 TEST(OctomapBuilder, PutsLeavesWhereTheDepthIs) {
     const CameraInfo camera = small_camera();
@@ -142,6 +122,113 @@ TEST(OctomapBuilder, FrozenKeyframesStayInTheTree) {
         builder->flush();
     }
     EXPECT_TRUE(bounded.tree() == unbounded.tree());
+}
+
+/// The tree of all scans at their last poses, made at once.
+std::unique_ptr<OctomapBuilder> fresh(const std::map<int, std::pair<DepthImage, Pose>>& scans,
+                                      const OctomapOptions& options = {}) {
+    auto builder = std::make_unique<OctomapBuilder>(options);
+    for (const auto& [id, scan] : scans) builder->add(id, scan.first, small_camera(), scan.second);
+    builder->flush();
+    return builder;
+}
+
+TEST(OctomapBuilder, ARebuildLeavesWhatNothingMovedIn) {
+    OctomapBuilder builder;
+    std::map<int, std::pair<DepthImage, Pose>> scans;
+    // Ten rooms, ten metres from one another, three keyframes each.
+    for (int i = 0; i < 30; ++i) {
+        scans[i] = {room(small_camera()), pose(10 * (i / 3) + 0.1 * i, 0.02 * i)};
+        builder.add(i, scans[i].first, small_camera(), scans[i].second);
+    }
+    scans[7].second = pose(20.9, 0.2);
+    KeyframeTrajectory corrected;
+    for (const auto& [id, scan] : scans) corrected.keyframes.push_back({id, 0, scan.second});
+    EXPECT_TRUE(builder.update(corrected));
+    builder.flush();
+    EXPECT_EQ(builder.rebuilds(), 1u);
+    EXPECT_EQ(builder.reinserted(), 3u) << "the three of that room";
+    EXPECT_TRUE(builder.tree() == fresh(scans)->tree());
+    EXPECT_EQ(builder.tree().size(), fresh(scans)->tree().size());
+}
+
+TEST(OctomapBuilder, GrowsOnWhileARebuildIsUnderWay) {
+    OctomapBuilder builder;
+    std::map<int, std::pair<DepthImage, Pose>> scans;
+    const auto take = [&](int id, double x) {
+        scans[id] = {room(small_camera()), pose(x, 0.1)};
+        EXPECT_TRUE(builder.keep(id, std::make_shared<StoredScan>(scans[id].first, small_camera()),
+                                 scans[id].second));
+    };
+    for (int i = 0; i < 10; ++i) take(i, 0.3 * i);
+    while (builder.advance(true)) continue;
+    for (auto& [id, scan] : scans) scan.second = pose(0.35 * id, 0.1);
+    KeyframeTrajectory corrected;
+    for (const auto& [id, scan] : scans) corrected.keyframes.push_back({id, 0, scan.second});
+    ASSERT_TRUE(builder.update(corrected));
+    for (int steps = 0; steps < 5; ++steps) ASSERT_TRUE(builder.advance(true));
+    take(10, 3.6);
+    ASSERT_TRUE(builder.advance(true));
+    EXPECT_EQ(builder.keyframes_in_tree(), 11u) << "a new keyframe does not wait for the rebuild";
+    EXPECT_EQ(builder.rebuilds(), 0u);
+    EXPECT_EQ(builder.waiting(), 0u);
+    while (builder.advance(true)) continue;
+    builder.tidy();
+    EXPECT_EQ(builder.rebuilds(), 1u);
+    EXPECT_TRUE(builder.tree() == fresh(scans)->tree());
+    EXPECT_FALSE(builder.advance(true));
+}
+
+TEST(OctomapBuilder, ManySmallStepsEndAtTheTreeOfOneBuild) {
+    for (std::uint64_t seed = 0; seed < 6; ++seed) {
+        std::mt19937_64 random(seed);
+        std::uniform_real_distribution<double> jitter(-0.2, 0.2);
+        const auto chance = [&](int of) { return std::uniform_int_distribution<int>(1, of)(random) == 1; };
+        OctomapOptions options;
+        options.max_keyframes = seed % 2 == 0 ? 2000 : 12;
+        options.moved_m = options.moved_deg = 0;
+        options.resolution_m = 0.1;
+        OctomapBuilder builder(options);
+        std::map<int, std::pair<DepthImage, Pose>> scans;
+        int next = 0;
+        for (int step = 0; step < 200; ++step) {
+            if (next < 25 && chance(5)) {
+                const int id = next++;
+                scans[id] = {room(small_camera(), static_cast<std::uint16_t>(10 * id)),
+                             pose(0.7 * id, 0.03 * id)};
+                ASSERT_TRUE(builder.keep(id, std::make_shared<StoredScan>(scans[id].first, small_camera()),
+                                         scans[id].second));
+            }
+            if (chance(15)) {
+                KeyframeTrajectory corrected;
+                for (auto& [id, scan] : scans) {
+                    // Near the newest, or all: a small correction and a loop closure.
+                    if (id < static_cast<int>(builder.frozen()) || (id + 4 < next && step % 3 != 0)) continue;
+                    scan.second = pose(0.7 * id + jitter(random), 0.03 * id);
+                    corrected.keyframes.push_back({id, 0, scan.second});
+                }
+                builder.update(corrected);
+            }
+            builder.advance(!chance(3));
+            if (chance(20)) builder.tidy();
+        }
+        while (builder.advance(true)) continue;
+        builder.tidy();
+        ASSERT_GT(builder.rebuilds(), 1u);
+        ASSERT_TRUE(builder.tree() == fresh(scans, options)->tree()) << "seed " << seed;
+    }
+}
+
+TEST(OctomapBuilder, AFrozenKeyframeDoesNotComeAgain) {
+    OctomapOptions options;
+    options.max_keyframes = 1;
+    OctomapBuilder builder(options);
+    EXPECT_TRUE(builder.add(4, room(small_camera()), small_camera(), pose(0, 0)));
+    EXPECT_TRUE(builder.add(5, room(small_camera()), small_camera(), pose(0.1, 0)));
+    EXPECT_FALSE(builder.add(4, room(small_camera()), small_camera(), pose(0.2, 0)));
+    EXPECT_FALSE(builder.add(3, room(small_camera()), small_camera(), pose(0.2, 0)));
+    EXPECT_EQ(builder.frozen(), 1u);
+    EXPECT_EQ(builder.keyframes_in_tree(), 2u);
 }
 
 TEST(OctomapBuilder, SizesAreThoseOfTheFiles) {

@@ -1,14 +1,35 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "octomap/octomap_shell.hpp"
 
+#include <chrono>
 #include <planemap/map_size_t.hpp>
+#include <thread>
 
 #include "shell_fixture.hpp"
 
 namespace planemap {
 namespace {
 
-class OctomapShellTest : public test::ShellTest {};
+class OctomapShellTest : public test::ShellTest {
+  protected:
+    /// Frames, keyframes and the trajectory after each, moved sideways by `shift` metres.
+    void walk(int keyframes, double shift) {
+        KeyframeTrajectory trajectory;
+        for (int id = 0; id < keyframes; ++id) {
+            Keyframe keyframe;
+            keyframe.id = id;
+            keyframe.utime = 1000 * (id + 1);
+            bus_.publish(channels::kFrame, frame(keyframe.utime));
+            bus_.publish(channels::kKeyframe, to_message(keyframe, id));
+            Pose pose = Pose::Identity();
+            pose.translation().x() = 0.1 * id + shift;
+            trajectory.keyframes.push_back({id, keyframe.utime, pose});
+            trajectory.utime = keyframe.utime;
+            trajectory.revision = id + 1;
+            bus_.publish(channels::kTrajectory, to_message(trajectory, id));
+        }
+    }
+};
 
 TEST_F(OctomapShellTest, MapsTheDepthOfKeyframesAmongCorruptMessages) {
     OctomapShell shell(bus_, std::make_shared<FrameDecoder>(bus_), {});
@@ -43,6 +64,62 @@ TEST_F(OctomapShellTest, AKeyframeWhoseFrameNeverCameIsCounted) {
     bus_.publish(channels::kKeyframe, to_message(keyframe, 0));
     bus_.drain();
     EXPECT_EQ(shell.status().dropped_count(), 1);
+    EXPECT_EQ(shell.status().losses().at("keyframes whose frame was gone"), 1);
+}
+
+TEST_F(OctomapShellTest, AKeyframeThatNeverGotAPoseIsCounted) {
+    OctomapShell shell(bus_, std::make_shared<FrameDecoder>(bus_), {});
+    publish_camera();
+    bus_.publish(channels::kFrame, frame(1000));
+    Keyframe keyframe;
+    keyframe.id = 0;
+    keyframe.utime = 1000;
+    bus_.publish(channels::kKeyframe, to_message(keyframe, 0));
+    bus_.drain();
+    EXPECT_EQ(shell.status().dropped_count(), 0);
+    shell.finish();
+    EXPECT_EQ(shell.status().dropped_count(), 1);
+    EXPECT_EQ(shell.status().losses().at("keyframes that never got a pose"), 1);
+}
+
+TEST_F(OctomapShellTest, FrozenKeyframesAreCounted) {
+    OctomapOptions options;
+    options.max_keyframes = 2;
+    OctomapShell shell(bus_, std::make_shared<FrameDecoder>(bus_), options);
+    publish_camera();
+    walk(5, 0);
+    bus_.drain();
+    shell.finish();
+    EXPECT_EQ(shell.status().dropped_count(), 0);
+    EXPECT_EQ(shell.status().losses().at("depth images of old keyframes, which stay at their pose"), 3);
+}
+
+TEST_F(OctomapShellTest, TheBackgroundComesToTheSameSizes) {
+    OctomapShell shell(bus_, std::make_shared<FrameDecoder>(bus_), {});
+    OctomapShell background(bus_, std::make_shared<FrameDecoder>(bus_), {}, Building::kInBackground);
+    const auto sizes = collect<map_size_t>(channels::kOctomapSize);
+    publish_camera();
+    walk(12, 0);
+    bus_.drain();
+    walk(12, 0.04);  // the same keyframes, corrected
+    bus_.drain();
+    EXPECT_EQ(background.status().dropped_count(), 0);
+    // No time is asserted: it is asked until it has caught up, which the test's time-out bounds.
+    while (sizes->empty() || sizes->back().revision != 12 ||
+           background.status().line().find("not yet where") != std::string::npos) {
+        background.poll();
+        bus_.drain();
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    background.finish();
+    shell.finish();
+    bus_.drain();
+    ASSERT_GE(sizes->size(), 2u);
+    const map_size_t &ours = (*sizes)[sizes->size() - 2], &theirs = sizes->back();
+    EXPECT_EQ(ours.n_keyframes, 12);
+    EXPECT_EQ(ours.revision, theirs.revision);
+    EXPECT_EQ(ours.bt_bytes, theirs.bt_bytes);
+    EXPECT_EQ(ours.n_nodes, theirs.n_nodes);
 }
 
 }  // namespace
