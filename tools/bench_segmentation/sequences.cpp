@@ -40,7 +40,7 @@ template <typename Decode>
 auto read_image(const std::filesystem::path& file, const CameraInfo& camera, const Decode& decode) {
     const std::string bytes = read_file(file);
     try {
-        return decode(bytes, camera.depth.width, camera.depth.height);
+        return decode(bytes, camera.depth.width, camera.depth.height, nullptr);
     } catch (const std::runtime_error& error) {
         throw std::runtime_error(file.string() + ": " + error.what());
     }
