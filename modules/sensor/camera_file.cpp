@@ -179,7 +179,11 @@ CameraInfo read_camera_file(const std::filesystem::path& file) {
     FieldErrors errors(file.string());
     CameraInfo camera = read_camera(Reader(document, "", errors));
     errors.throw_if_any();
-    camera.validate();
+    try {
+        camera.validate();
+    } catch (const std::invalid_argument& error) {
+        throw std::invalid_argument(file.string() + ": " + error.what());
+    }
     return camera;
 }
 

@@ -101,9 +101,8 @@ int run(RunOptions options) {
     if (pipeline.estimates().empty())
         throw std::runtime_error(options.input + ": no frame of it could be used");
     if (report.at("tracked") == 0) {
-        throw std::runtime_error(
-            options.input + ": none of its " + std::to_string(input->frames()) +
-            " frames could be tracked: no depth (all zero, or out of range) or nothing to follow in them");
+        throw std::runtime_error(options.input + ": none of its " + std::to_string(input->frames()) +
+                                 " frames could be tracked: " + pipeline.why_lost());
     }
     return 0;
 }
