@@ -2,6 +2,8 @@
 #include "core/camera.hpp"
 
 #include <cmath>
+#include <sstream>
+#include <string>
 
 #include "core/validation.hpp"
 
@@ -28,6 +30,18 @@ void check(const PinholeCamera& camera, const std::string& name, FieldErrors& er
     centre(camera.cy, ".cy");
 }
 
+/// Registration is for images of comparable resolution: beyond, a pixel of one camera is a blot on the
+/// other's image, and such numbers are more often a mistake than a sensor.
+void check_ratio(double depth, double color, const std::string& field, FieldErrors& errors) {
+    constexpr double kLeast = 0.3, kMost = 4;
+    if (!(depth > 0 && color > 0 && std::isfinite(depth) && std::isfinite(color))) return;
+    if (depth >= kLeast * color && depth <= kMost * color) return;
+    std::ostringstream value;
+    value << depth / color << " (" << depth << " / " << color << " pixels)";
+    errors.require(false, "depth." + field + " / color." + field, value.str(),
+                   "0.3 to 4 for depth to be registered to colour");
+}
+
 }  // namespace
 
 void CameraInfo::validate() const {
@@ -36,6 +50,8 @@ void CameraInfo::validate() const {
         errors.require(false, "serial", serial.substr(0, 64) + "...", "at most 64 characters");
     check(depth, "depth", errors);
     check(color, "color", errors);
+    check_ratio(depth.fx, color.fx, "fx", errors);
+    check_ratio(depth.fy, color.fy, "fy", errors);
     errors.require(is_valid(color_from_depth), "color_from_depth", "not a rigid transform",
                    "a rigid transform");
     errors.require(std::isfinite(depth_units_per_metre) && depth_units_per_metre > 0, "depth_units_per_metre",

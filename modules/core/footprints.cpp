@@ -224,11 +224,57 @@ void Footprints::fill_quad(const std::array<ColorPoint, 4>& c) {
     }
 }
 
+/// Part of a depth image: columns u0 to before u1, rows v0 to before v1.
+struct Window {
+    int u0, v0, u1, v1;
+};
+
+/// The part that the colour camera can see. A colour pixel sees points from infinity to the nearest reading,
+/// which lie on a line of the depth image; all of them lie between those of the image's four corners.
+Window seen_part(const DepthImage& depth, const CameraInfo& camera, const Reprojection& reprojection) {
+    constexpr double kMargin = 4;  // slopes look two pixels around
+    const Window all{0, 0, depth.width, depth.height};
+    std::uint16_t nearest = 65535;
+    for (const std::uint16_t raw : depth.pixels)
+        nearest = std::min(nearest, static_cast<std::uint16_t>(raw == 0 ? 65535 : raw));
+    Eigen::Array2d low(1e9, 1e9), high(-1e9, -1e9);
+    for (const double w : {0.0, camera.depth_units_per_metre / nearest}) {
+        Eigen::Matrix3d color_from_depth = reprojection.m;  // of pixels, at inverse depth w
+        color_from_depth.col(2) += reprojection.t * w;
+        const Eigen::Matrix3d back = color_from_depth.inverse();
+        for (const double x : {-0.5, camera.color.width - 0.5}) {
+            for (const double y : {-0.5, camera.color.height - 0.5}) {
+                const Eigen::Vector3d p = back * Eigen::Vector3d(x, y, 1);
+                if (!(p.z() > 1e-3 && p.allFinite())) return all;
+                low = low.min(p.head<2>().array() / p.z());
+                high = high.max(p.head<2>().array() / p.z());
+            }
+        }
+    }
+    const auto within = [](double value, int size) {
+        return static_cast<int>(std::clamp(value, 0.0, double(size)));
+    };
+    const Window seen{within(low.x() - kMargin, depth.width), within(low.y() - kMargin, depth.height),
+                      within(high.x() + kMargin + 1, depth.width),
+                      within(high.y() + kMargin + 1, depth.height)};
+    return seen.u0 < seen.u1 && seen.v0 < seen.v1 ? seen : all;
+}
+
+DepthImage cut(const DepthImage& depth, const Window& window) {
+    DepthImage part(window.u1 - window.u0, window.v1 - window.v0);
+    for (int v = 0; v < part.height; ++v)
+        std::copy_n(depth.row(v + window.v0) + window.u0, part.width, part.row(v));
+    return part;
+}
+
 }  // namespace
 
 void fill_footprints(const DepthImage& depth, const CameraInfo& camera, const Reprojection& reprojection,
                      DepthImage& registered) {
-    Footprints(depth, camera, reprojection, registered).fill();
+    const Window window = seen_part(depth, camera, reprojection);
+    Reprojection of_part = reprojection;
+    of_part.m.col(2) += reprojection.m.col(0) * window.u0 + reprojection.m.col(1) * window.v0;
+    Footprints(cut(depth, window), camera, of_part, registered).fill();
 }
 
 }  // namespace planemap

@@ -9,21 +9,6 @@ namespace planemap {
 
 namespace {
 
-struct Edge {
-    Eigen::Vector2d a, b;
-    double x_min, x_max;
-};
-
-double turn(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c) {
-    return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
-}
-
-bool cross_properly(const Edge& e, const Edge& f) {
-    if (std::max(e.a.y(), e.b.y()) < std::min(f.a.y(), f.b.y())) return false;
-    if (std::max(f.a.y(), f.b.y()) < std::min(e.a.y(), e.b.y())) return false;
-    return turn(e.a, e.b, f.a) * turn(e.a, e.b, f.b) < 0 && turn(f.a, f.b, e.a) * turn(f.a, f.b, e.b) < 0;
-}
-
 /// Simplified as far as the tolerance allows without rings that cross.
 Outline simplified_without_crossings(const Outline& outline, double tolerance) {
     for (int attempt = 0; attempt < 4; ++attempt, tolerance /= 2) {
@@ -40,24 +25,6 @@ std::uint64_t parity_up_to(std::uint64_t bits) {
 }
 
 }  // namespace
-
-bool rings_cross(const Outline& outline) {
-    std::vector<Edge> edges;
-    edges.reserve(outline.vertex_count());
-    for (const Ring& ring : outline.rings) {
-        for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
-            edges.push_back(
-                {ring[j], ring[i], std::min(ring[i].x(), ring[j].x()), std::max(ring[i].x(), ring[j].x())});
-        }
-    }
-    std::sort(edges.begin(), edges.end(), [](const Edge& e, const Edge& f) { return e.x_min < f.x_min; });
-    for (std::size_t i = 0; i < edges.size(); ++i) {
-        for (std::size_t j = i + 1; j < edges.size() && edges[j].x_min <= edges[i].x_max; ++j) {
-            if (cross_properly(edges[i], edges[j])) return true;
-        }
-    }
-    return false;
-}
 
 void FlatPolygon::assign(const Outline& outline) {
     clear();

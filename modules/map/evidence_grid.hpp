@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/crossing.hpp"
 #include "core/outline.hpp"
 #include "core/pose.hpp"
 #include "map/bitmap.hpp"
@@ -110,8 +111,5 @@ class EvidenceGrid {
     std::vector<Cells> cells_;
     std::vector<std::uint64_t> flips_;  ///< scratch of add()
 };
-
-/// True when two edges of the rings cross at inner points of both. Touching is not crossing.
-bool rings_cross(const Outline& outline);
 
 }  // namespace planemap

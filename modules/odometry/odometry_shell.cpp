@@ -8,6 +8,26 @@
 
 namespace planemap {
 
+namespace {
+
+/// Why a lost frame's depth cannot be the help that it should be; nullptr when it can.
+const char* fault_of_depth(const Frame& frame) {
+    constexpr double kHardlyAny = 0.01;  // share of an image's pixels
+    const CameraInfo& camera = frame.camera();
+    const auto share = [&](const DepthImage& depth) {
+        const double low = camera.depth_min_m * camera.depth_units_per_metre,
+                     high = camera.depth_max_m * camera.depth_units_per_metre;
+        const auto count = std::count_if(depth.pixels.begin(), depth.pixels.end(), [&](std::uint16_t raw) {
+            return is_valid_depth(raw) && raw >= low && raw <= high;
+        });
+        return static_cast<double>(count) / static_cast<double>(depth.pixels.size());
+    };
+    if (share(frame.depth()) < kHardlyAny) return OdometryShell::kNoReadings;
+    return share(frame.depth_in_color()) < kHardlyAny ? OdometryShell::kBesideColor : nullptr;
+}
+
+}  // namespace
+
 OdometryShell::OdometryShell(Bus& bus, std::shared_ptr<FrameDecoder> decoder, const OdometryOptions& options)
     : bus_(bus), decoder_(std::move(decoder)), odometry_(options) {
     bus_.subscribe(channels::kFrame, status_.guard([this](const RawMessage& m) { on_frame(m); }), 8);
@@ -92,10 +112,12 @@ void OdometryShell::process(const Waiting& input) {
         bus_.publish(channels::kPose, to_pose_message(result.estimate));
     if (result.keyframe) bus_.publish(channels::kKeyframe, to_message(*result.keyframe, keyframe_seq_++));
     status_.published();
-    status_.set_text(result.estimate.status == TrackingStatus::kLost
-                         ? "lost"
-                         : "tracked, " + std::to_string(result.estimate.inliers) + " of " +
-                               std::to_string(result.estimate.features) + " features");
+    const bool is_lost = result.estimate.status == TrackingStatus::kLost;
+    const char* const fault = is_lost ? fault_of_depth(frame) : nullptr;
+    if (fault != nullptr) status_.lost(fault);
+    status_.set_text(is_lost ? "lost"
+                             : "tracked, " + std::to_string(result.estimate.inliers) + " of " +
+                                   std::to_string(result.estimate.features) + " features");
 }
 
 void OdometryShell::finish() {

@@ -18,6 +18,10 @@ class OdometryShell : public Shell {
   public:
     OdometryShell(Bus& bus, std::shared_ptr<FrameDecoder> decoder, const OdometryOptions& options);
 
+    /// Reasons in status().losses() for frames that were not tracked; others had depth that could be used.
+    static constexpr const char* kNoReadings = "untracked frames with hardly a depth reading in range";
+    static constexpr const char* kBesideColor = "untracked frames whose depth lies beside the colour image";
+
     ModuleStatus& status() override { return status_; }
     /// Handles the frames that still wait.
     void finish() override;

@@ -40,7 +40,7 @@ class CellSegmenter : public Segmenter {
         merge_pieces(camera);
         make_regions(out.regions);
         grid_.take_labels(out.labels);
-        tracer_.trace_all(out.labels, camera, out.regions);
+        tracer_.trace_all(depth, out.labels, camera, out.regions);
     }
 
   private:

@@ -49,7 +49,7 @@ class RansacSegmenter : public Segmenter {
         }
         sort_largest_first(out);
         spread_labels(depth, camera, out);
-        tracer_.trace_all(out.labels, camera, out.regions);
+        tracer_.trace_all(depth, out.labels, camera, out.regions);
     }
 
   private:

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <utility>
 
 namespace planemap {
@@ -231,11 +232,38 @@ void ShapeTracer::trace_rings(std::vector<PlanarRegion>& regions) {
     }
 }
 
-void ShapeTracer::shape(const CameraInfo& camera, PlanarRegion& region) {
+/// The point p of a ring's corner (in blocks), no further from the nearest reading of the block that the
+/// corner belongs to than it may be. A reading's place is its foot on the plane.
+Eigen::Vector3d ShapeTracer::held(const Eigen::Vector2d& corner, const Eigen::Vector3d& p,
+                                  const CameraInfo& camera, std::uint16_t label, const Plane& plane) const {
+    constexpr double kReach = 0.75;  // of a block
+    // Corners are midpoints of edges between a block with the label and one without.
+    int x = static_cast<int>(corner.x()), y = static_cast<int>(corner.y());
+    if (blocks_(x, y) != label) (corner.x() == x ? x : y) -= 1;
+    const int u0 = (x - 1) * block_px_, v0 = (y - 1) * block_px_;
+    double nearest = std::numeric_limits<double>::infinity();
+    Eigen::Vector3d at = p;
+    for (int v = v0; v < std::min(v0 + block_px_, labels_->height); ++v) {
+        for (int u = u0; u < std::min(u0 + block_px_, labels_->width); ++u) {
+            if ((*labels_)(u, v) != label) continue;
+            const Eigen::Vector3d foot =
+                plane.project(camera.depth.unproject(u, v, camera.metres((*depth_)(u, v))));
+            const double distance2 = (foot - p).squaredNorm();
+            if (distance2 < nearest) nearest = distance2, at = foot;
+        }
+    }
+    const double distance = (p - at).norm();
+    const double reach = kReach * block_px_ * at.z() / std::max(camera.depth.fx, camera.depth.fy);
+    return distance > reach ? Eigen::Vector3d(at + reach / distance * (p - at)) : p;
+}
+
+void ShapeTracer::shape(const CameraInfo& camera, std::uint16_t label, PlanarRegion& region) {
     const Eigen::Matrix3d axes = principal_axes(region.plane, region.moments);
     const Eigen::Vector2d last(camera.depth.width - 0.5, camera.depth.height - 0.5);
-    // The range that is trusted may be any; no reading is farther than the largest.
+    // For rays that hardly meet the plane, or do not. The range that is trusted may be any; no reading is
+    // farther than the largest.
     const double farthest_m = 2 * std::min(camera.depth_max_m, camera.metres(65534));
+    bool moved = false;
     corners_.clear();
     for (const Ring& ring : region.outline.rings) {
         for (const Eigen::Vector2d& corner : ring) {
@@ -243,7 +271,10 @@ void ShapeTracer::shape(const CameraInfo& camera, PlanarRegion& region) {
             // and the first block is one of 0 that is not in the image.
             const Eigen::Vector2d pixel =
                 (corner.array() - 1).matrix() * block_px_ - Eigen::Vector2d(0.5, 0.5);
-            corners_.push_back(ray_on_plane(camera.depth, region.plane, pixel.cwiseMin(last), farthest_m));
+            const Eigen::Vector3d p =
+                ray_on_plane(camera.depth, region.plane, pixel.cwiseMin(last), farthest_m);
+            corners_.push_back(held(corner, p, camera, label, region.plane));
+            moved |= corners_.back() != p;
         }
     }
     if (corners_.empty()) corners_.push_back(region.plane.project(region.moments.mean()));
@@ -257,16 +288,21 @@ void ShapeTracer::shape(const CameraInfo& camera, PlanarRegion& region) {
         // Image rows grow downwards, the box's y axis does not: turn outer rings counter-clockwise again.
         std::reverse(ring.begin(), ring.end());
     }
+    // The two sides of a thin strip may have passed each other.
+    if (moved) crossing_remover_.remove(region.outline);
 }
 
-void ShapeTracer::trace_all(const Image<std::uint16_t>& labels, const CameraInfo& camera,
-                            std::vector<PlanarRegion>& regions) {
+void ShapeTracer::trace_all(const DepthImage& depth, const Image<std::uint16_t>& labels,
+                            const CameraInfo& camera, std::vector<PlanarRegion>& regions) {
     recycle(regions);
     if (regions.empty()) return;
     constexpr int kBlocksAcross = 160;
     find_blocks(labels, std::max(1, (labels.width + kBlocksAcross / 2) / kBlocksAcross));
     trace_rings(regions);
-    for (PlanarRegion& region : regions) shape(camera, region);
+    depth_ = &depth;
+    labels_ = &labels;
+    for (std::size_t i = 0; i < regions.size(); ++i)
+        shape(camera, static_cast<std::uint16_t>(i + 1), regions[i]);
 }
 
 }  // namespace planemap

@@ -296,7 +296,11 @@ CameraInfo read_camera_file(const std::filesystem::path& file, std::vector<std::
     const Reader reader(document, "", errors);
     CameraInfo camera = read_camera(reader);
     errors.throw_if_any();
-    camera.validate();
+    try {
+        camera.validate();
+    } catch (const std::invalid_argument& error) {
+        throw std::invalid_argument(file.string() + ": " + error.what());
+    }
     const std::vector<std::string> unused = unused_keys(reader, camera);
     if (notes != nullptr && !unused.empty()) {
         notes->push_back(file.string() + ": known, but not used: " + joined(unused));

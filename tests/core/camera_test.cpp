@@ -99,5 +99,21 @@ TEST(Camera, EqualityComparesEveryField) {
     EXPECT_FALSE(a == b);
 }
 
+TEST(Camera, ResolutionsTooFarApartAreRefusedWithBothFocalLengths) {
+    for (const double ratio : {0.3, 0.62, 1.0, 4.0}) {
+        CameraInfo info = kinect();
+        info.depth.fx *= ratio;
+        info.depth.fy *= ratio;
+        EXPECT_EQ(error_of(info), "") << ratio;
+    }
+    CameraInfo info = kinect();
+    info.color.fx = 2100;  // depth's 525 is a quarter
+    EXPECT_THAT(error_of(info), HasSubstr("depth.fx / color.fx is 0.25 (525 / 2100 pixels), must be 0.3 to 4"));
+    EXPECT_EQ(error_of(info).find("fy"), std::string::npos);
+    info = kinect();
+    info.color.fy = 100;
+    EXPECT_THAT(error_of(info), HasSubstr("depth.fy / color.fy is 5.3 (530 / 100 pixels), must be 0.3 to 4"));
+}
+
 }  // namespace
 }  // namespace planemap

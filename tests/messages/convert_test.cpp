@@ -38,6 +38,21 @@ TEST(Convert, CameraRoundTrip) {
     EXPECT_TRUE(from_message(to_message(camera, 1, 2)) == camera);
 }
 
+TEST(Convert, ACameraWhoseResolutionsAreTooFarApartIsRefusedWithTheReason) {
+    CameraInfo camera;
+    camera.depth = {320, 288, 250, 250, 160, 144};
+    camera.color = {3840, 2160, 1900, 1900, 1920, 1080};
+    const auto message = to_message(camera, 1, 2);
+    try {
+        from_message(message);
+        ADD_FAILURE() << "taken";
+    } catch (const MessageError& error) {
+        EXPECT_NE(std::string(error.what()).find("depth.fx / color.fx is 0.131579 (250 / 1900 pixels)"),
+                  std::string::npos)
+            << error.what();
+    }
+}
+
 TEST(Convert, BadCameraNamesItsFields) {
     camera_info_t message = to_message(test::sample_camera(), 1, 2);
     message.depth.fx = 0;

@@ -76,5 +76,32 @@ TEST_F(OdometryShellTest, RegionsMayComeFirst) {
     EXPECT_EQ(estimates->size(), 1u);
 }
 
+TEST_F(OdometryShellTest, WhatIsWrongWithALostFramesDepthIsCounted) {
+    OdometryShell shell(bus_, std::make_shared<FrameDecoder>(bus_), {});
+    const auto publish = [&](const CameraInfo& info, std::uint16_t raw, std::int64_t utime) {
+        bus_.publish(channels::kCameraInfo, to_message(info, 0, 0));
+        bot_core::images_t images = frame(utime);
+        images.images[0] = color_image_message(RgbImage(kWidth, kHeight), utime, ColorEncoding::kRaw, 90);
+        images.images[1] = depth_image_message(DepthImage(kWidth, kHeight, raw), utime, DepthEncoding::kRaw);
+        bus_.publish(channels::kFrame, images);
+        bus_.drain();
+        shell.finish();
+    };
+    const auto count = [&](const char* reason) {
+        const auto& losses = shell.status().losses();
+        return losses.count(reason) == 0 ? 0 : losses.at(reason);
+    };
+    publish(camera(), 0, 1);
+    publish(camera(), 20000, 2);  // 20 m
+    EXPECT_EQ(count(OdometryShell::kNoReadings), 2);
+    EXPECT_EQ(count(OdometryShell::kBesideColor), 0);
+    CameraInfo aside = camera();
+    aside.registered = false;
+    aside.color_from_depth.linear() = so3_exp({0, 1.5, 0});
+    publish(aside, 2000, 3);
+    EXPECT_EQ(count(OdometryShell::kNoReadings), 2);
+    EXPECT_EQ(count(OdometryShell::kBesideColor), 1);
+}
+
 }  // namespace
 }  // namespace planemap

@@ -174,6 +174,7 @@ TEST_P(EveryMethod, SurvivesHostileCameras) {
         if (one_in(2)) camera.depth.fx = power(-range, range) * width;
         if (one_in(2)) camera.depth.fy = power(-range, range) * width;
         if (one_in(4)) camera.depth.cx = power(-range, range);
+        camera.color = camera.depth;  // resolutions far apart are refused
         camera.depth_min_m = one_in(2) ? 0 : 1 / camera.depth_units_per_metre;
         camera.depth_max_m = std::min(1e308, 60000 / camera.depth_units_per_metre);
         if (one_in(2)) camera.noise = {0, 0, 0};

@@ -5,10 +5,13 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <random>
 #include <vector>
 
+#include "segmentation/outline_reach.hpp"
 #include "segmentation/scene.hpp"
+#include "segmentation/segmentation.hpp"
 
 namespace planemap {
 namespace {
@@ -33,7 +36,7 @@ struct Labelled {
             }
         }
         regions[0].plane = plane;
-        ShapeTracer().trace_all(labels, camera, regions);
+        ShapeTracer().trace_all(depth, labels, camera, regions);
     }
 
     double share_inside_outline() const {
@@ -130,7 +133,7 @@ TEST(ShapeTest, CornersBeyondTheHorizonAreNoFartherThanReadings) {
     for (const double x : {-1, 0, 1}) {
         for (const double z : {2, 3}) regions[0].moments.add({x, 1, z});
     }
-    ShapeTracer().trace_all(Image<std::uint16_t>(64, 48, 1), camera, regions);
+    ShapeTracer().trace_all(DepthImage(64, 48, 3000), Image<std::uint16_t>(64, 48, 1), camera, regions);
     EXPECT_TRUE(is_valid(regions[0]));
     EXPECT_LT(regions[0].box.half_extents.maxCoeff(), 2 * 65.5);
 }
@@ -148,7 +151,7 @@ struct Traced {
             }
         }
         for (PlanarRegion& region : regions) region.plane = kSlanted;
-        tracer.trace_all(labels, camera, regions);
+        tracer.trace_all(scene::render(camera, {scene::plane(kSlanted)}), labels, camera, regions);
     }
     /// A region's outline in blocks of so many pixels.
     Outline in_blocks(std::size_t region, double block_px) const {
@@ -315,6 +318,35 @@ TEST(ShapeTest, RecycledMemoryChangesNothing) {
             previous = again.regions;
         }
     }
+}
+
+TEST(ShapeTest, OutlinesDoNotReachBeyondReadings) {
+    std::mt19937_64 random(11);
+    const auto pick = [&](double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(random);
+    };
+    const std::unique_ptr<Segmenter> segmenter = make_segmenter({});
+    int vertices = 0, crossing = 0;
+    for (int trial = 0; trial < 40; ++trial) {
+        CameraInfo camera = scene::camera(trial % 2 == 0 ? 320 : 640, trial % 2 == 0 ? 240 : 480);
+        camera.depth_max_m = pick(2, 9);  // cuts the floor off, wherever it is seen at a grazing angle
+        const double pitch = pick(-0.15, 0.3), roll = pick(-0.3, 0.3);
+        const Eigen::Matrix3d turn = so3_exp({pitch, 0, 0}) * so3_exp({0, 0, roll});
+        const Plane floor{turn * Eigen::Vector3d(0, -1, 0), pick(0.1, 1.5)};
+        const Plane wall = scene::tilted(pick(-0.3, 0.3), pick(-1.4, 1.4), {0, 0, pick(1, 7)});
+        const Eigen::Vector2d post(pick(-1, 1), pick(1, 3));
+        const DepthImage depth = scene::render(
+            camera, {scene::plane(floor), scene::plane(wall), scene::cylinder(post.x(), post.y(), 0.05)},
+            trial % 4 != 0, static_cast<std::uint64_t>(trial + 1));
+        Segmentation segmentation;
+        segmenter->segment(depth, camera, segmentation);
+        const test::Reach reach = test::reach_of(segmentation, depth, camera);
+        EXPECT_LE(reach.worst, 1) << trial;
+        vertices += reach.vertices;
+        crossing += reach.crossing;
+    }
+    EXPECT_GT(vertices, 1000);
+    EXPECT_EQ(crossing, 0);
 }
 
 TEST(DepthRangeTest, KeepsWithin16BitsAndOffInvalidValues) {

@@ -66,6 +66,18 @@ TEST(CameraFile, AllBadValuesAreInOneError) {
     EXPECT_THAT(error, Not(HasSubstr("\n")));
 }
 
+TEST(CameraFile, ResolutionsTooFarApartAreRefusedByNameAndFile) {
+    // A phone's LiDAR beside its full-size photographs.
+    const std::string error = error_of([] {
+        read(R"({"depth_camera": {"width": 256, "height": 192, "fx": 212, "fy": 212, "cx": 128, "cy": 96},
+                 "color_camera": {"width": 1920, "height": 1440, "fx": 1590, "fy": 1590, "cx": 960, "cy": 720},
+                 "depth_units_per_metre": 1000, "registered": true})");
+    });
+    for (const char* part :
+         {"camera.json", "depth.fx / color.fx is 0.133333 (212 / 1590 pixels)", "0.3 to 4"})
+        EXPECT_THAT(error, HasSubstr(part));
+}
+
 TEST(CameraFile, UnregisteredNeedsBothCamerasAndTheTransform) {
     const std::string error = error_of(
         [] { read(std::string(kDepth) + R"(, "depth_units_per_metre": 1000, "registered": false})"); });

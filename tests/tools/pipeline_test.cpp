@@ -6,14 +6,18 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <random>
 
 #include "core/temporary_folder.hpp"
 #include "data_folder.hpp"
 #include "decimated_sequence.hpp"
 #include "evaluate/evaluation.hpp"
 #include "run/input.hpp"
+#include "segmentation/outline_reach.hpp"
+#include "segmentation/segmentation.hpp"
 
 namespace planemap {
 namespace {
@@ -78,6 +82,72 @@ TEST_F(Resolutions, AWideDepthCameraBesideANarrowColourCameraIsTracked) {
     const Outcome outcome = run(test::data_folder("aims_robot"));
     EXPECT_EQ(outcome.frames, 80);
     EXPECT_GE(outcome.tracked, 79);
+}
+
+/// Real sensors' noise, ranges and gaps.
+TEST(OutlinesOfRecordings, DoNotReachBeyondReadings) {
+    const std::unique_ptr<Segmenter> segmenter = make_segmenter({});
+    int looked_at = 0;
+    for (const char* sequence : {"aims_robot", "d435_stills"}) {
+        if (!std::filesystem::is_directory(test::data_folder(sequence))) continue;
+        Dataset dataset(test::data_folder(sequence));
+        SensorFrame frame;
+        for (int i = 0; dataset.next(frame).status == ReadResult::Status::kFrame; ++i) {
+            if (i % 8 != 0) continue;
+            Segmentation segmentation;
+            segmenter->segment(frame.depth, dataset.camera(), segmentation);
+            const test::Reach reach = test::reach_of(segmentation, frame.depth, dataset.camera());
+            EXPECT_LE(reach.worst, 1) << sequence << ", frame " << i;
+            EXPECT_EQ(reach.crossing, 0) << sequence << ", frame " << i;
+            ++looked_at;
+        }
+    }
+    if (looked_at == 0)
+        GTEST_SKIP() << "sample data aims_robot and d435_stills are missing (set PLANEMAP_DATA)";
+}
+
+/// Frames of one depth image without colour, as a recording.
+std::string why_none_tracked(const std::filesystem::path& folder, const CameraInfo& camera,
+                             const std::function<std::uint16_t(int, int)>& reading) {
+    std::filesystem::create_directories(folder / "depth");
+    std::string list;
+    for (int i = 0; i < 3; ++i) {
+        DepthImage depth(camera.depth.width, camera.depth.height);
+        for (int v = 0; v < depth.height; ++v) {
+            for (int u = 0; u < depth.width; ++u) depth(u, v) = reading(u, v);
+        }
+        const std::string name = "depth/" + std::to_string(i) + ".png";
+        write_depth_png(folder / name, depth);
+        list += std::to_string(1 + 0.1 * i) + " " + name + "\n";
+    }
+    write_file(folder / "depth.txt", list);
+    write_file(folder / "camera.json",
+               R"({"depth_camera": {"width": 160, "height": 120, "fx": 140, "fy": 140, "cx": 80, "cy": 60},)"
+               R"( "depth_units_per_metre": 1000})");
+    Bus bus("memq://");
+    PipelineOptions options;
+    options.with_octomap = false;
+    Pipeline pipeline(bus, options);
+    const std::unique_ptr<Input> input = open_input(folder.string(), bus, std::nullopt);
+    while (input->feed()) pipeline.settle();
+    pipeline.finish();
+    EXPECT_EQ(pipeline.estimates().size(), 3u);
+    for (const OdometryEstimate& estimate : pipeline.estimates())
+        EXPECT_EQ(estimate.status, TrackingStatus::kLost);
+    return pipeline.why_lost();
+}
+
+TEST(WhyLost, DepthIsBlamedOnlyForItsOwnFaults) {
+    const test::TemporaryFolder folder;
+    CameraInfo camera;
+    camera.depth = {160, 120, 140, 140, 80, 60};
+    EXPECT_NE(why_none_tracked(folder / "far", camera, [](int, int) { return std::uint16_t{30000}; })
+                  .find("hardly a depth reading"),
+              std::string::npos);
+    std::mt19937 random(1);
+    const auto anything = [&](int, int) { return static_cast<std::uint16_t>(500 + random() % 6000); };
+    EXPECT_NE(why_none_tracked(folder / "noise", camera, anything).find("nothing to follow"),
+              std::string::npos);
 }
 
 }  // namespace

@@ -81,7 +81,7 @@ std::string map(const RunOptions& options, Input& input, Pipeline& pipeline, Res
 
 /// What is wrong with the results, a line each; the last says what became of them.
 std::vector<std::string> problems_of(const std::string& input_name, const Input& input,
-                                     const Pipeline& pipeline, const ResultFolder& folder,
+                                     Pipeline& pipeline, const ResultFolder& folder,
                                      const Outputs& outputs) {
     std::vector<std::string> lines = outputs.failures;
     const std::string earlier =
@@ -92,10 +92,8 @@ std::vector<std::string> problems_of(const std::string& input_name, const Input&
     if (pipeline.estimates().empty()) {
         lines.push_back(input_name + ": no frame of it could be used" + earlier);
     } else if (tracked_frames(pipeline) == 0) {
-        lines.push_back(
-            input_name + ": none of its " + std::to_string(input.frames()) +
-            " frames could be tracked: no depth (all zero, or out of range) or nothing to follow in them" +
-            earlier);
+        lines.push_back(input_name + ": none of its " + std::to_string(input.frames()) +
+                        " frames could be tracked: " + pipeline.why_lost() + earlier);
     } else if (!outputs.failures.empty()) {
         lines.push_back(std::to_string(outputs.failures.size()) + " of the results could not be written" +
                         (aside.empty() ? "; the others are in " + outputs.folder.string() : aside));

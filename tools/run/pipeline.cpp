@@ -67,4 +67,21 @@ Trajectory Pipeline::trajectory() const {
     return trajectory;
 }
 
+std::string Pipeline::why_lost() {
+    const auto lost = std::count_if(
+        estimates_.begin(), estimates_.end(),
+        [](const OdometryEstimate& estimate) { return estimate.status == TrackingStatus::kLost; });
+    const auto& losses = odometry_.status().losses();
+    const auto is_most = [&](const char* reason) {
+        const auto found = losses.find(reason);
+        return found != losses.end() && 2 * found->second > lost;
+    };
+    if (is_most(OdometryShell::kNoReadings))
+        return "they have hardly a depth reading that is valid and within the camera's depth_range_m";
+    if (is_most(OdometryShell::kBesideColor))
+        return "their depth lies beside the colour image; are camera.json's cameras and color_from_depth "
+               "right?";
+    return "depth is there, but nothing to follow in it and in the colour image";
+}
+
 }  // namespace planemap

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/keyframe.hpp"
@@ -51,6 +52,9 @@ class Pipeline {
     /// World poses of all tracked frames after graph optimisation, at the moments that they are of; without
     /// a graph their poses in the odom frame, with given poses these.
     Trajectory trajectory() const;
+
+    /// Why most frames that were not tracked were not, as far as that is known: words to follow a colon.
+    std::string why_lost();
 
     /// What went wrong on the bus, by its kind.
     const Complaints& complaints() const { return bus_.complaints(); }
