@@ -234,6 +234,8 @@ bool Bus::handle(int timeout_ms) {
     if (waiting == 0 || (waiting < 0 && errno == EINTR)) return false;
     if (waiting > 0 && lcm_->handle() == 0) return true;
     if (endpoint_.is_log()) {
+        spdlog::info("LCM URL '{}': the log is read to its end, or to a record that liblcm cannot read",
+                     url());
         ended_ = true;
         return false;
     }
