@@ -49,6 +49,18 @@ TEST(Bus, AHandlerThatThrowsIsCountedAndTheNextMessagesArrive) {
     EXPECT_EQ(bus.handler_errors(), 3);
 }
 
+TEST(Bus, AMessageThatSeveralHandlersDropIsOneComplaint) {
+    Bus bus("memq://");
+    for (int i = 0; i < 3; ++i)
+        bus.subscribe("ODO", [](const RawMessage& m) { decode<odometry_t>(m.bytes); });
+    for (int i = 0; i < 5; ++i) bus.publish_bytes("ODO", std::vector<std::uint8_t>(40, 0xff));
+    bus.drain();
+    EXPECT_EQ(bus.handler_errors(), 15);
+    EXPECT_EQ(bus.complaints().count(), 5);
+    ASSERT_EQ(bus.complaints().totals().size(), 1u);
+    EXPECT_NE(bus.complaints().totals()[0].find("(5 times)"), std::string::npos);
+}
+
 TEST(Bus, MessagesPublishedInAHandlerArrive) {
     Bus bus("memq://");
     int echoes = 0;
@@ -241,7 +253,7 @@ TEST(Complaints, ThousandsOfAKindAreAFewLinesAndACount) {
     const std::vector<std::string> totals = complaints.totals();
     ASSERT_EQ(totals.size(), 2u);
     EXPECT_EQ(totals[0], "another thing");
-    EXPECT_EQ(totals[1], "frame 0.png: cannot be read (10000 like it)");
+    EXPECT_EQ(totals[1], "frame 0.png: cannot be read (10000 times)");
 }
 
 TEST(Complaints, KindsAreBounded) {
