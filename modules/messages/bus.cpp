@@ -220,6 +220,9 @@ void Bus::dispatch(const lcm::ReceiveBuffer* buffer, const std::string& channel,
 
 void Bus::report(std::string_view channel, const char* reason) {
     ++handler_errors_;
+    if (reported_ == handled_ && reported_reason_ == reason) return;
+    reported_ = handled_;
+    reported_reason_ = reason;
     complaints_.add(std::string(channel) + ": message dropped: " + reason);
 }
 
@@ -232,8 +235,11 @@ bool Bus::handle(int timeout_ms) {
     pollfd ready = {lcm_->getFileno(), POLLIN, 0};
     const int waiting = ready.fd < 0 ? -1 : ::poll(&ready, 1, timeout_ms);
     if (waiting == 0 || (waiting < 0 && errno == EINTR)) return false;
+    ++handled_;
     if (waiting > 0 && lcm_->handle() == 0) return true;
     if (endpoint_.is_log()) {
+        spdlog::info("LCM URL '{}': the log is read to its end, or to a record that liblcm cannot read",
+                     url());
         ended_ = true;
         return false;
     }

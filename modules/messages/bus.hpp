@@ -77,7 +77,7 @@ class Bus {
     std::string trouble() const;
 
     /// Counts and logs (by its kind) a message that was dropped; for shells that find out after their handler
-    /// returned.
+    /// returned. Several shells of a process that drop one message for one reason are one complaint.
     void report(std::string_view channel, const char* reason);
     /// Messages dropped so, and handlers that threw, since the start.
     std::int64_t handler_errors() const { return handler_errors_; }
@@ -101,6 +101,8 @@ class Bus {
     std::vector<std::uint8_t> buffer_;
     Complaints complaints_;
     std::int64_t handler_errors_ = 0, unsent_ = 0;
+    std::int64_t handled_ = 0, reported_ = 0;  ///< messages handled; the one that report() was last called in
+    std::string reported_reason_;
     bool broken_ = false;  ///< lcm_ is of no use any more; it goes where none of its handlers runs
     bool ended_ = false;
     std::string lost_reason_;

@@ -36,12 +36,12 @@ void Complaints::add(const std::string& line, const std::string& kind_line) {
         spdlog::warn("{}", kind.first);
     } else if (kind.count == kind.next_said) {
         kind.next_said *= 10;
-        spdlog::warn("{} ({} like it so far)", line, kind.count);
+        spdlog::warn("{} ({} times so far)", line, kind.count);
     }
 }
 
 std::string Complaints::total(const Kind& kind) {
-    return kind.count == 1 ? kind.first : kind.first + " (" + std::to_string(kind.count) + " like it)";
+    return kind.count == 1 ? kind.first : kind.first + " (" + std::to_string(kind.count) + " times)";
 }
 
 std::vector<std::string> Complaints::totals() const {

@@ -21,7 +21,7 @@ class Complaints {
 
     /// Of all kinds, since the start.
     std::int64_t count() const { return count_; }
-    /// A line a kind, in the order of the alphabet: the first that was said, and how many like it came after.
+    /// A line a kind, in the order of the alphabet: the first that was said, and how many there were.
     std::vector<std::string> totals() const;
     /// Logs the totals of those kinds of which more came than were said.
     void log_totals() const;

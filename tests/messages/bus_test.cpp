@@ -49,6 +49,18 @@ TEST(Bus, AHandlerThatThrowsIsCountedAndTheNextMessagesArrive) {
     EXPECT_EQ(bus.handler_errors(), 3);
 }
 
+TEST(Bus, AMessageThatSeveralHandlersDropIsOneComplaint) {
+    Bus bus("memq://");
+    for (int i = 0; i < 3; ++i)
+        bus.subscribe("ODO", [](const RawMessage& m) { decode<odometry_t>(m.bytes); });
+    for (int i = 0; i < 5; ++i) bus.publish_bytes("ODO", std::vector<std::uint8_t>(40, 0xff));
+    bus.drain();
+    EXPECT_EQ(bus.handler_errors(), 15);
+    EXPECT_EQ(bus.complaints().count(), 5);
+    ASSERT_EQ(bus.complaints().totals().size(), 1u);
+    EXPECT_NE(bus.complaints().totals()[0].find("(5 times)"), std::string::npos);
+}
+
 TEST(Bus, MessagesPublishedInAHandlerArrive) {
     Bus bus("memq://");
     int echoes = 0;
@@ -164,6 +176,31 @@ TEST(Bus, WhoeverListensAndIsNoServerDoesNotHoldABusUp) {
     EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(2));
 }
 
+/// A server whose queue is full drops the request to connect: liblcm alone would wait for minutes.
+TEST(Bus, AServerThatDoesNotAnswerDoesNotHoldABusUp) {
+    const int listener = ::socket(AF_INET, SOCK_STREAM, 0);
+    sockaddr_in address = {};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof(address);
+    auto* const generic = reinterpret_cast<sockaddr*>(&address);
+    ASSERT_EQ(::bind(listener, generic, size), 0);
+    ASSERT_EQ(::listen(listener, 0), 0);
+    ASSERT_EQ(::getsockname(listener, generic, &size), 0);
+    std::vector<int> waiting;
+    for (int i = 0; i < 8; ++i) {
+        waiting.push_back(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK, 0));
+        ::connect(waiting.back(), generic, size);
+    }
+    const auto start = std::chrono::steady_clock::now();
+    Bus bus("tcpq://127.0.0.1:" + std::to_string(ntohs(address.sin_port)));
+    EXPECT_FALSE(bus.connected());
+    EXPECT_FALSE(bus.handle(10));
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(1));
+    for (const int fd : waiting) ::close(fd);
+    ::close(listener);
+}
+
 TEST(Bus, AServerThatCannotBeReachedOrNamedIsNoError) {
     for (const char* url :
          {"tcpq://192.0.2.1:7700", "tcpq://no-such-host.invalid:7700", "tcpq://127.0.0.1:1"}) {
@@ -216,7 +253,7 @@ TEST(Complaints, ThousandsOfAKindAreAFewLinesAndACount) {
     const std::vector<std::string> totals = complaints.totals();
     ASSERT_EQ(totals.size(), 2u);
     EXPECT_EQ(totals[0], "another thing");
-    EXPECT_EQ(totals[1], "frame 0.png: cannot be read (10000 like it)");
+    EXPECT_EQ(totals[1], "frame 0.png: cannot be read (10000 times)");
 }
 
 TEST(Complaints, KindsAreBounded) {

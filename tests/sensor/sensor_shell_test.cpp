@@ -5,9 +5,11 @@
 #include <spdlog/sinks/ostream_sink.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <sstream>
 #include <thread>
 
+#include "messages/tcpq_server.hpp"
 #include "shell_fixture.hpp"
 
 namespace planemap {
@@ -240,6 +242,36 @@ TEST_F(SensorShellTest, ASourceWithoutOneGoodFrameEndsInAnError) {
     while (good.poll() >= 0) {
     }
     EXPECT_NO_THROW(good.finish());
+}
+
+/// Without anybody to send to a recording waits; it does not make up for the time when it goes on.
+TEST_F(SensorShellTest, ARecordingWaitsForAConnection) {
+    auto server = std::make_unique<test::TcpqServer>();
+    const std::uint16_t port = server->port();
+    Bus bus(server->url());
+    SensorShellOptions options;
+    options.speed = 3;  // a frame in 100 ms
+    SensorShell shell(bus, std::make_unique<FakeSource>(camera()), options);
+    const auto play = [&](auto until) {
+        const std::int64_t start = now_us();
+        while (!until() && now_us() - start < 8000000) {
+            const int wait_ms = shell.poll();
+            if (wait_ms < 0) return;
+            bus.handle(std::max(1, std::min(wait_ms, 20)));
+        }
+    };
+    play([&] { return shell.frames() == 2; });
+    server.reset();
+    play([&] { return !bus.connected(); });
+    const std::int64_t lost_us = now_us(), frames = shell.frames();
+    play([&] { return now_us() - lost_us > 700000; });
+    EXPECT_EQ(shell.frames(), frames) << "nobody was there";
+    server = std::make_unique<test::TcpqServer>(port);
+    play([&] { return bus.connected(); });
+    const std::int64_t again_us = now_us();
+    play([&] { return shell.frames() == 9; });
+    EXPECT_EQ(shell.frames(), 9);
+    EXPECT_GE(now_us() - again_us, 100000 * (8 - frames)) << "at its pace";
 }
 
 TEST_F(SensorShellTest, BadOptionsAreNamed) {

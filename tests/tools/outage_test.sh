@@ -109,7 +109,8 @@ if command -v java >/dev/null && [[ -f /usr/share/java/lcm.jar ]]; then
     done
     stop_modules
     expect_map "tcpq"
-    kill -TERM "$server" && wait "$server" 2>/dev/null || true
+    kill -KILL "$server"
+    wait "$server" 2>/dev/null || true
     server=
 else
     stop sensor 0

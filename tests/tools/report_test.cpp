@@ -98,6 +98,16 @@ TEST(Report, AccuracyWithItsNotesAndWarnings) {
         EXPECT_NE(text.find(line), std::string::npos) << line << "\n" << text;
 }
 
+TEST(Report, WhatWasWrongWithTheInputIsListed) {
+    EXPECT_EQ(report_markdown(sample()).find("What was wrong"), std::string::npos)
+        << "an older report has no list";
+    Json report = sample();
+    report["complaints"] = {"a.lcmlog is cut short", "colour left out (12 times)"};
+    const std::string text = report_markdown(report);
+    EXPECT_NE(text.find("- a.lcmlog is cut short\n- colour left out (12 times)\n"), std::string::npos)
+        << text;
+}
+
 TEST(Report, AnEmptyMapHasNoRatio) {
     Json report = sample();
     report["sizes_bytes"]["plane_map_message"] = 0;

@@ -203,7 +203,7 @@ TEST_F(RunTest, WhatIsDamagedInALogIsSaidAndCounted) {
     EXPECT_EQ(report("out").at("frames"), 19);
     const std::string all = complaints.dump();
     for (const char* said :
-         {"in 1 place are no whole LCM events, about 1 event lost", "colour left out: JPEG: ", "(6 like it)",
+         {"in 1 place are no whole LCM events, about 1 event lost", "colour left out: JPEG: ", "(6 times)",
           "frames of other channels than OPENNI_FRAME are not read: WEBCAM bot_core.images_t"}) {
         EXPECT_NE(all.find(said), std::string::npos) << said << " in " << all;
     }

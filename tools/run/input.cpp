@@ -126,7 +126,7 @@ class LogInput : public Input {
         bool described = false;
         std::int64_t unusable = 0;
         std::string reason;
-        for (LogEvent event; !(described && !channel_.empty()) && ahead.next(event);) {
+        for (LogEvent event; !((described || has_camera) && !channel_.empty()) && ahead.next(event);) {
             contents.add(event);
             if (channel_.empty() && is_a<bot_core::images_t>(event) && has_depth(event))
                 channel_ = event.channel;

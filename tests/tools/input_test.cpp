@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run/input.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "messages/channels.hpp"
+#include "messages/convert.hpp"
+#include "messages/log.hpp"
+
+namespace planemap {
+namespace {
+
+class LogInputTest : public testing::Test {
+  protected:
+    LogInputTest() {
+        camera_.depth = camera_.color = {64, 48, 50, 50, 31.5, 23.5};
+        bus_.subscribe(".*", [this](const RawMessage& m) { seen_.push_back(std::string(m.channel)); });
+    }
+    ~LogInputTest() override { std::filesystem::remove(file_); }
+
+    template <typename T>
+    void add(LogWriter& log, const char* channel, const T& message) {
+        LogEvent event{number_++, number_ * 1000, channel,
+                       std::vector<std::uint8_t>(static_cast<std::size_t>(message.getEncodedSize()))};
+        message.encode(event.bytes.data(), 0, message.getEncodedSize());
+        log.write(event);
+    }
+    static bot_core::images_t frame(bool depth) {
+        bot_core::images_t images;
+        images.image_types = {depth ? std::int16_t{bot_core::images_t::DEPTH_MM}
+                                    : std::int16_t{bot_core::images_t::LEFT}};
+        images.images = {depth ? depth_image_message(DepthImage(64, 48), 1, DepthEncoding::kRaw)
+                               : color_image_message(RgbImage(64, 48), 1, ColorEncoding::kRaw, 90)};
+        images.n_images = 1;
+        return images;
+    }
+    int feed(Input& input) {
+        int frames = 0;
+        while (input.feed()) ++frames;
+        bus_.drain();
+        return frames;
+    }
+    std::string error() {
+        try {
+            open_input(file_, bus_, std::nullopt);
+            return {};
+        } catch (const std::runtime_error& error) {
+            return error.what();
+        }
+    }
+
+    Bus bus_{"memq://"};
+    CameraInfo camera_;
+    std::vector<std::string> seen_;
+    std::int64_t number_ = 0;
+    std::filesystem::path file_ = std::filesystem::temp_directory_path() /
+                                  ("planemap_input_test_" + std::to_string(::getpid()) + ".lcmlog");
+};
+
+TEST_F(LogInputTest, TheChannelWithDepthIsReadAndTheOthersAreNamed) {
+    LogWriter log(file_);
+    add(log, channels::kCameraInfo, to_message(camera_, 0, 0));
+    add(log, "WEBCAM", frame(false));
+    add(log, "HEAD", frame(false));  // as heads send it before the depth camera's first message
+    for (int i = 0; i < 3; ++i) {
+        add(log, "HEAD", frame(true));
+        add(log, "WEBCAM", frame(false));
+    }
+    log.close();
+    const auto input = open_input(file_, bus_, std::nullopt);
+    EXPECT_EQ(feed(*input), 4);
+    ASSERT_EQ(input->complaints().size(), 1u);
+    EXPECT_EQ(input->complaints()[0],
+              "frames of other channels than HEAD are not read: WEBCAM bot_core.images_t (4)");
+    EXPECT_EQ(std::count(seen_.begin(), seen_.end(), std::string(channels::kFrame)), 4);
+}
+
+TEST_F(LogInputTest, ABadCameraDescriptionIsNamedWithItsReason) {
+    CameraInfo bad = camera_;
+    bad.depth.fx = -3;
+    LogWriter log(file_);
+    add(log, channels::kCameraInfo, to_message(bad, 0, 0));
+    add(log, channels::kFrame, frame(true));
+    add(log, channels::kCameraInfo, to_message(bad, 0, 1));
+    log.close();
+    const std::string said = error();
+    EXPECT_EQ(said.rfind(file_.string() + ": none of the 2 camera_info_t in this log can be used (", 0), 0u)
+        << said;
+    EXPECT_NE(said.find("fx"), std::string::npos) << said;
+    EXPECT_NE(said.find("-3"), std::string::npos) << said;
+    EXPECT_NO_THROW(open_input(file_, bus_, camera_)) << "one that is given does";
+}
+
+TEST_F(LogInputTest, ColourAloneIsNoRecording) {
+    LogWriter log(file_);
+    add(log, channels::kCameraInfo, to_message(camera_, 0, 0));
+    for (int i = 0; i < 3; ++i) add(log, "WEBCAM", frame(false));
+    log.close();
+    const std::string said = error();
+    EXPECT_NE(said.find("no camera frames with depth"), std::string::npos) << said;
+    EXPECT_NE(said.find("PLANEMAP_CAMERA_INFO planemap.camera_info_t (1), WEBCAM bot_core.images_t (3)"),
+              std::string::npos)
+        << said;
+}
+
+/// What was read before stays; why it ended is said.
+TEST_F(LogInputTest, ALogThatCannotBeReadOnEndsTheInputWithItsReason) {
+    LogWriter log(file_);
+    add(log, channels::kCameraInfo, to_message(camera_, 0, 0));
+    for (int i = 0; i < 200; ++i) add(log, channels::kFrame, frame(true));
+    log.close();
+    const auto input = open_input(file_, bus_, std::nullopt);
+    ASSERT_TRUE(input->feed());
+    EXPECT_EQ(input->failure(), "");
+    std::filesystem::resize_file(file_, std::filesystem::file_size(file_) / 2);
+    EXPECT_LT(feed(*input), 150);
+    EXPECT_EQ(input->failure().rfind(file_.string() + ": became shorter while it was read", 0), 0u)
+        << input->failure();
+}
+
+}  // namespace
+}  // namespace planemap
