@@ -5,24 +5,23 @@ set -euo pipefail
 
 bin="$1"
 launch="$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)/tools/launch"
-work="$(mktemp -d)"
-trap 'rm -rf "$work"' EXIT
+work="$(mktemp -d)" said="$(mktemp)"
+trap 'rm -rf "$work" "$said"' EXIT
 
 # refused WORDS ARGUMENTS...: launch must end with an error that contains the words, and leave the folder as it was.
 refused() {
     local words="$1" before after
     shift
     before="$(cd "$work" && find . -type f -exec sha256sum {} + | sort; find "$work" | sort)"
-    if "$launch" --bin "$bin" --lcm-url memq:// "$@" >/dev/null 2>"/tmp/launch_test.$$"; then
+    if "$launch" --bin "$bin" --lcm-url memq:// "$@" >/dev/null 2>"$said"; then
         echo "launch_test: launch $* was not refused" >&2
         exit 1
     fi
-    grep -qF -- "$words" "/tmp/launch_test.$$" || {
+    grep -qF -- "$words" "$said" || {
         echo "launch_test: launch $*: no '$words' in:" >&2
-        cat "/tmp/launch_test.$$" >&2
+        cat "$said" >&2
         exit 1
     }
-    rm -f "/tmp/launch_test.$$"
     after="$(cd "$work" && find . -type f -exec sha256sum {} + | sort; find "$work" | sort)"
     [[ "$before" == "$after" ]] || {
         echo "launch_test: launch $* touched files: $before became $after" >&2

@@ -199,6 +199,7 @@ void run(const Arguments& arguments) {
     } else if (!arguments.json_file.empty()) {
         write_file(arguments.json_file, json.dump(2) + "\n");
     }
+    finish_printing();
 }
 
 }  // namespace

@@ -40,12 +40,13 @@ void OutputFile::keep(const std::string& so_far) {
 
 void OutputFile::finish(const std::string& whole) {
     if (to_stdout_) return print(whole);
-    if (!results_) {
-        if (!file_.empty()) write_file(file_, whole);
-        return;
+    if (results_) {
+        results_->make({file_.filename().string(), [&](const auto& file) { write_file(file, whole); }});
+        results_->replace();
+    } else if (!file_.empty()) {
+        write_file(file_, whole);
     }
-    results_->make({file_.filename().string(), [&](const auto& file) { write_file(file, whole); }});
-    results_->replace();
+    finish_printing();
 }
 
 }  // namespace planemap

@@ -26,7 +26,7 @@ class OutputFile {
     std::FILE* for_people() const { return to_stdout_ ? stderr : stdout; }
     /// What there is so far; each call replaces the one before.
     void keep(const std::string& so_far);
-    /// All there is. Throws std::runtime_error if it cannot be written.
+    /// All there is, and for people, too. Throws std::runtime_error if it cannot be written.
     void finish(const std::string& whole);
 
   private:

@@ -10,8 +10,15 @@
 namespace planemap {
 
 void print(std::string_view text) {
-    if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
-        throw std::runtime_error(std::string("standard output: cannot be written: ") + std::strerror(errno));
+    std::fwrite(text.data(), 1, text.size(), stdout);
+    finish_printing();
+}
+
+void finish_printing() {
+    errno = 0;
+    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return;
+    throw std::runtime_error(std::string("standard output: cannot be written") +
+                             (errno != 0 ? std::string(": ") + std::strerror(errno) : ""));
 }
 
 }  // namespace planemap

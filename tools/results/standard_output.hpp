@@ -9,4 +9,7 @@ namespace planemap {
 /// a full disk.
 void print(std::string_view text);
 
+/// Sees through what was printed by other means, e.g. a table, in the same way.
+void finish_printing();
+
 }  // namespace planemap

@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "messages/process.hpp"
+#include "results/standard_output.hpp"
 #include "segment/segment_images.hpp"
 #include "segmentation/segmentation_shell.hpp"
 #include "sensor/camera_file.hpp"
@@ -31,6 +32,7 @@ int run(const SegmentImagesOptions& options, const std::filesystem::path& camera
     const std::size_t done = options.images.size() - report.errors.size();
     std::printf("%s: %zu of %zu images, %zu regions\n", options.output.c_str(), done, options.images.size(),
                 report.regions);
+    finish_printing();
     return report.errors.empty() ? 0 : 1;
 }
 
