@@ -60,8 +60,11 @@ TEST_F(ProgramsTest, DumpTheirOptionsWithTheRightUnits) {
                 EXPECT_THAT(line, AllOf(Not(HasSubstr("metres")), testing::ContainsRegex("sigma|residual")))
                     << program;
             }
-            for (const char* unit : {"-deg", "-rad", "-px", "-s"})
-                if (name.ends_with(unit)) EXPECT_THAT(line, Not(HasSubstr("metres"))) << program;
+            for (const char* unit : {"-deg", "-rad", "-px", "-s"}) {
+                if (name.ends_with(unit)) {
+                    EXPECT_THAT(line, Not(HasSubstr("metres"))) << program;
+                }
+            }
         }
         const std::string file = path("all.ini");
         write_file(file, dumped.out);
