@@ -93,7 +93,7 @@ TEST_F(ProgramsTest, ADumpedConfigGivesTheSameRun) {
                             "octomap_bt_zstd", "octomap_working"})
         EXPECT_GT(a.at("sizes_bytes").at(key).get<std::int64_t>(), 0) << key;
     EXPECT_LT(a.at("sizes_bytes").at("octomap_bt_occupied"), a.at("sizes_bytes").at("octomap_bt"));
-    EXPECT_LT(a.at("sizes_bytes").at("octomap_bt_memory"), a.at("sizes_bytes").at("octomap_memory"));
+    EXPECT_LE(a.at("sizes_bytes").at("octomap_bt_memory"), a.at("sizes_bytes").at("octomap_memory"));
     EXPECT_LT(a.at("sizes_bytes").at("octomap_bt_zstd"), a.at("sizes_bytes").at("octomap_bt"));
     EXPECT_GT(a.at("sizes_bytes").at("plane_map_working"), a.at("sizes_bytes").at("plane_map_memory"));
 }
@@ -138,7 +138,7 @@ TEST_F(ProgramsTest, EvaluateRefusesWhatCannotBeCompared) {
 }
 
 TEST_F(ProgramsTest, FramesOfEveryInput) {
-    const std::string world = "'sim:office?frames=12&width=160&height=120' ";
+    const std::string world = "'sim:office?frames=12&width=320&height=240' ";
     ASSERT_EQ(run("planemap-simulate", world + "--output " + path("office.lcmlog")).exit_code, 0);
     const Trajectory truth = read_trajectory(folder_ / "groundtruth.txt");
     for (const std::string& input : {world, path("office.lcmlog")}) {
