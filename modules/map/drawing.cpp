@@ -18,7 +18,7 @@ namespace {
 using Polygon3 = std::vector<std::vector<Eigen::Vector3d>>;  ///< rings in the world frame
 
 constexpr double kPageWidth_px = 1200, kPageHeight_px = 800, kMargin_px = 40;
-constexpr double kTitleHeight_px = 44, kFootHeight_px = 50, kLegendWidth_px = 220;
+constexpr double kTitleHeight_px = 44, kFootHeight_px = 50, kLegendWidth_px = 260;
 constexpr double kNumberedArea_m2 = 0.15;  ///< smaller planes are drawn without their number
 
 std::string text(double value) {
@@ -459,12 +459,15 @@ std::optional<SpaceBar> bar_before(const std::vector<const MapPlane*>& planes, c
 
 template <typename Project>
 std::string drawn_bar(const SpaceBar& bar, const Project& project) {
-    const Eigen::Vector2d below = project(0.5 * (bar.from + bar.to) + bar.tick);
+    const Eigen::Vector3d middle = 0.5 * (bar.from + bar.to);
+    const Eigen::Vector2d outward = (project(middle + bar.tick) - project(middle)).normalized();
+    const char* anchor = outward.x() > 0.4    ? "text-anchor=\"start\""
+                         : outward.x() < -0.4 ? "text-anchor=\"end\""
+                                              : "text-anchor=\"middle\"";
     return "<path d=\"" + move_to(project(bar.from + bar.tick)) + line_to(project(bar.from)) +
            line_to(project(bar.to)) + line_to(project(bar.to + bar.tick)) +
            "\" fill=\"none\" stroke=\"black\" stroke-width=\"1.5\"/>\n" +
-           words(below + Eigen::Vector2d(0, 18), metres(bar.length) + " here; further away smaller",
-                 "text-anchor=\"middle\"");
+           words(project(middle) + 18 * outward + Eigen::Vector2d(0, 5), metres(bar.length), anchor);
 }
 
 }  // namespace
@@ -527,7 +530,7 @@ std::string perspective_svg(const PlaneMap& map, const Trajectory& trajectory) {
     }
     const std::size_t hidden = map.planes.size() - visible.size();
     return page(count_of(map.planes.size(), "plane") + " in perspective",
-                "from above a corner; a colour a plane" +
+                "from above a corner; a colour a plane; the bar is true where it lies" +
                     (hidden == 0 ? "" : "; " + std::to_string(hidden) + " that face away are not drawn") +
                     "; " + up_text(map),
                 body + trajectory_line(trajectory, project) + (bar ? drawn_bar(*bar, project) : ""));

@@ -10,7 +10,7 @@ namespace planemap {
 namespace {
 
 std::string text_of(const FrameRange& range) {
-    return std::to_string(range.from) + ":" + (range.to ? std::to_string(*range.to) : "");
+    return "\"" + std::to_string(range.from) + ":" + (range.to ? std::to_string(*range.to) : "") + "\"";
 }
 
 }  // namespace

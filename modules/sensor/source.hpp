@@ -55,7 +55,7 @@ class FrameSource {
 /// How an input is read.
 struct SourceOptions {
     double max_color_gap_s = 0.02;  ///< depth without a colour image this near in time has no colour
-    FrameRange frames;              ///< what next() gives; as if the source had no others
+    FrameRange frames{};            ///< what next() gives; as if the source had no others
 
     /// Throws std::invalid_argument that names every bad field.
     void validate() const;

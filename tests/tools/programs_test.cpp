@@ -60,8 +60,11 @@ TEST_F(ProgramsTest, DumpTheirOptionsWithTheRightUnits) {
                 EXPECT_THAT(line, AllOf(Not(HasSubstr("metres")), testing::ContainsRegex("sigma|residual")))
                     << program;
             }
-            for (const char* unit : {"-deg", "-rad", "-px", "-s"})
-                if (name.ends_with(unit)) EXPECT_THAT(line, Not(HasSubstr("metres"))) << program;
+            for (const char* unit : {"-deg", "-rad", "-px", "-s"}) {
+                if (name.ends_with(unit)) {
+                    EXPECT_THAT(line, Not(HasSubstr("metres"))) << program;
+                }
+            }
         }
         const std::string file = path("all.ini");
         write_file(file, dumped.out);
@@ -90,7 +93,7 @@ TEST_F(ProgramsTest, ADumpedConfigGivesTheSameRun) {
                             "octomap_bt_zstd", "octomap_working"})
         EXPECT_GT(a.at("sizes_bytes").at(key).get<std::int64_t>(), 0) << key;
     EXPECT_LT(a.at("sizes_bytes").at("octomap_bt_occupied"), a.at("sizes_bytes").at("octomap_bt"));
-    EXPECT_LT(a.at("sizes_bytes").at("octomap_bt_memory"), a.at("sizes_bytes").at("octomap_memory"));
+    EXPECT_LE(a.at("sizes_bytes").at("octomap_bt_memory"), a.at("sizes_bytes").at("octomap_memory"));
     EXPECT_LT(a.at("sizes_bytes").at("octomap_bt_zstd"), a.at("sizes_bytes").at("octomap_bt"));
     EXPECT_GT(a.at("sizes_bytes").at("plane_map_working"), a.at("sizes_bytes").at("plane_map_memory"));
 }
@@ -135,7 +138,7 @@ TEST_F(ProgramsTest, EvaluateRefusesWhatCannotBeCompared) {
 }
 
 TEST_F(ProgramsTest, FramesOfEveryInput) {
-    const std::string world = "'sim:office?frames=12&width=160&height=120' ";
+    const std::string world = "'sim:office?frames=12&width=320&height=240' ";
     ASSERT_EQ(run("planemap-simulate", world + "--output " + path("office.lcmlog")).exit_code, 0);
     const Trajectory truth = read_trajectory(folder_ / "groundtruth.txt");
     for (const std::string& input : {world, path("office.lcmlog")}) {
@@ -145,8 +148,10 @@ TEST_F(ProgramsTest, FramesOfEveryInput) {
                 "planemap-run", input + " --no-octomap -q --output " + path("out") + " --frames " + range);
             ASSERT_EQ(outcome.exit_code, 0) << input << range << outcome.err;
             EXPECT_EQ(report("out").at("frames"), count) << input << range;
-            EXPECT_EQ(read_trajectory(folder_ / "out/trajectory.txt").at(0).utime,
-                      truth.at(static_cast<std::size_t>(first)).utime);
+            // The first frame's own time, or its colour image's, some milliseconds away.
+            const Trajectory trajectory = read_trajectory(folder_ / "out/trajectory.txt");
+            EXPECT_NEAR(static_cast<double>(trajectory.at(0).utime),
+                        static_cast<double>(truth.at(static_cast<std::size_t>(first)).utime), 15000.0);
         }
         for (const char* bad : {"12:", "9:4", "x:4", "4"})
             expect_error("planemap-run", input + " -q --output " + path("out") + " --frames " + bad,

@@ -119,7 +119,7 @@ std::string like_with_like(const Json& sizes) {
     const struct {
         const char *octomap, *planes, *what;
     } pairs[] = {{"octomap_bt", "plane_map_message", "as a file"},
-                 {"octomap_bt_zstd", "plane_map_zstd", "as a file, zstd"},
+                 {"octomap_bt_zstd", "plane_map_zstd", "as a file compressed by zstd"},
                  {"octomap_bt_memory", "plane_map_memory", "loaded in memory"},
                  {"octomap_working", "plane_map_working", "to go on mapping"}};
     std::string text;
