@@ -16,22 +16,21 @@ constexpr std::int64_t kPublishPeriodUs = 5000000;
 
 OctomapShell::OctomapShell(Bus& bus, std::shared_ptr<FrameDecoder> decoder, const OctomapOptions& options)
     : bus_(bus), decoder_(std::move(decoder)), builder_(options), resolution_m_(options.resolution_m) {
-    bus_.subscribe(channels::kFrame, status_.guard([this](const RawMessage& m) { on_frame(m); }), 8);
+    decoder_->subscribe(
+        status_, 8, [this](const auto& frame) { on_frame(frame); }, false);
     bus_.subscribe(channels::kKeyframe, status_.guard([this](const RawMessage& m) { on_keyframe(m); }), 256);
     bus_.subscribe(channels::kTrajectory, status_.guard([this](const RawMessage& m) { on_trajectory(m); }),
                    16);
 }
 
-void OctomapShell::on_frame(const RawMessage& message) {
-    auto frame = decoder_->decode(message);
-    if (!frame) return;
-    recent_.push_back(std::move(frame));
+void OctomapShell::on_frame(const std::shared_ptr<const Frame>& frame) {
+    recent_.push_back(frame);
     if (recent_.size() > kRecentFrames) recent_.pop_front();
 }
 
 void OctomapShell::on_keyframe(const RawMessage& message) {
     const keyframe_t received = decode<keyframe_t>(message.bytes);
-    status_.received(static_cast<std::uint32_t>(received.seq));
+    if (!keyframe_guard_.admits(received.seq, received.utime, message.bytes)) return;
     const auto frame = std::find_if(recent_.begin(), recent_.end(),
                                     [&](const auto& f) { return f->utime() == received.utime; });
     if (frame == recent_.end()) {
@@ -46,7 +45,9 @@ void OctomapShell::on_keyframe(const RawMessage& message) {
 }
 
 void OctomapShell::on_trajectory(const RawMessage& message) {
-    const KeyframeTrajectory trajectory = from_message(decode<trajectory_t>(message.bytes));
+    const trajectory_t received = decode<trajectory_t>(message.bytes);
+    const KeyframeTrajectory trajectory = from_message(received);
+    if (!trajectory_guard_.admits(received.seq, std::nullopt, message.bytes)) return;
     last_utime_ = trajectory.utime;
     last_revision_ = trajectory.revision;
     builder_.update(trajectory);

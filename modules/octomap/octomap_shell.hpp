@@ -6,8 +6,10 @@
 #include <memory>
 
 #include "core/keyframe.hpp"
+#include "messages/channels.hpp"
 #include "messages/frame_decoder.hpp"
 #include "messages/process.hpp"
+#include "messages/stream_guard.hpp"
 #include "octomap/octomap_builder.hpp"
 
 namespace planemap {
@@ -29,7 +31,7 @@ class OctomapShell : public Shell {
     static constexpr std::size_t kRecentFrames = 16;  ///< a keyframe comes a few frames after its frame
     static constexpr std::size_t kMaxWaiting = 64;    ///< keyframes without a pose
 
-    void on_frame(const RawMessage& message);
+    void on_frame(const std::shared_ptr<const Frame>& frame);
     void on_keyframe(const RawMessage& message);
     void on_trajectory(const RawMessage& message);
     void publish_size();
@@ -38,6 +40,8 @@ class OctomapShell : public Shell {
     std::shared_ptr<FrameDecoder> decoder_;
     OctomapBuilder builder_;
     ModuleStatus status_{"octomap"};
+    StreamGuard keyframe_guard_{channels::kKeyframe, "keyframes", status_};
+    StreamGuard trajectory_guard_{channels::kTrajectory, "trajectories", status_, false};
     std::deque<std::shared_ptr<const Frame>> recent_;
     std::map<int, std::shared_ptr<const Frame>> waiting_;  ///< by keyframe id
     double resolution_m_;

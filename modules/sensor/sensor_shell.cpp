@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "core/validation.hpp"
 #include "messages/channels.hpp"
@@ -14,7 +15,12 @@ namespace planemap {
 
 namespace {
 constexpr std::int64_t kCameraPeriodUs = 1000000;
+
+std::uint64_t random_sender() {
+    std::random_device random;
+    return std::uint64_t{random()} << 32 | random();
 }
+}  // namespace
 
 void SensorShellOptions::validate() const {
     FieldErrors errors("sensor");
@@ -29,6 +35,7 @@ void SensorShellOptions::validate() const {
 SensorShell::SensorShell(Bus& bus, std::unique_ptr<FrameSource> source, SensorShellOptions options)
     : bus_(bus), source_(std::move(source)), options_(options) {
     options_.validate();
+    if (!bus_.in_process()) sender_ = random_sender();
 }
 
 bool SensorShell::read() {
@@ -100,6 +107,7 @@ void SensorShell::publish(const SensorFrame& frame) {
     images.images.push_back(
         depth_image_message(frame.depth, frame.utime, zipped ? DepthEncoding::kZipped : DepthEncoding::kRaw));
     set_seq(images.images.back(), static_cast<std::uint32_t>(frames_));
+    if (sender_) set_sender(images.images.back(), *sender_);
     images.n_images = static_cast<std::int32_t>(images.images.size());
     bus_.publish(channels::kFrame, images);
     last_utime_ = frame.utime;

@@ -47,6 +47,8 @@ class SensorShell : public Shell {
     std::unique_ptr<FrameSource> source_;
     SensorShellOptions options_;
     ModuleStatus status_{"sensor"};
+    std::optional<std::uint64_t> sender_;  ///< tells this sender from another; none in one process, where a
+                                           ///< run gives the same bytes again
     SensorFrame frame_;
     bool pending_ = false;
     std::int64_t frames_ = 0, broken_ = 0, colorless_ = 0;
