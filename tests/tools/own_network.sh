@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# For scripts that put modules as separate processes on udpm; to be sourced.
+
+# enter_own_network SCRIPT ARGS...: runs the script again in a network namespace with nothing but loopback, as root or as
+# a user who may make one. Exits with 77, ctest's code for a skipped test, where multicast cannot be had.
+enter_own_network() {
+    local unshare
+    if [[ -n "${PLANEMAP_OWN_NETWORK:-}" ]]; then
+        ip link set lo up
+        ip route add 224.0.0.0/4 dev lo
+        return
+    fi
+    for unshare in "unshare --net" "unshare --net --map-root-user"; do
+        if $unshare ip link set lo up 2>/dev/null; then
+            PLANEMAP_OWN_NETWORK=1 exec $unshare "$@"
+        fi
+    done
+    if ! ip route get 239.255.76.67 >/dev/null 2>&1; then
+        echo "SKIP: no network namespace may be made here, and this network has no route for multicast"
+        exit 77
+    fi
+}
+
+# events LOG CHANNEL: how many events of a channel an LCM log holds.
+events() {
+    perl -e '
+        open(my $log, "<:raw", $ARGV[0]) or die "$ARGV[0]: $!\n";
+        my $count = 0;
+        while (read($log, my $head, 28) == 28) {
+            my ($sync, $number, $utime, $channel_size, $data_size) = unpack("N q> q> N N", $head);
+            die "$ARGV[0]: a record does not start with the sync word\n" if $sync != 0xEDA1DA01;
+            read($log, my $channel, $channel_size);
+            seek($log, $data_size, 1);
+            $count++ if $channel eq $ARGV[1];
+        }
+        print $count;' "$1" "$2"
+}
+
+# wait_for_modules LOG: until a running tools/launch --no-sensor --log LOG has recorded that the segmentation is there:
+# every module says so on the bus once a second.
+wait_for_modules() {
+    local attempt
+    for ((attempt = 0; attempt < 150; attempt++)); do
+        [[ -f "$1" && "$(events "$1" PLANEMAP_STATUS_SEGMENTATION)" -gt 0 ]] && return
+        sleep 0.1
+    done
+}
