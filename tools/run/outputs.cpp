@@ -13,6 +13,7 @@
 #include "messages/convert.hpp"
 #include "run/coverage.hpp"
 #include "run/input.hpp"
+#include "run/losses.hpp"
 #include "run/pipeline.hpp"
 #include "run/report.hpp"
 
@@ -140,6 +141,7 @@ Json write_outputs(const std::filesystem::path& folder, const std::string& input
     report["keyframes"] = keyframes.keyframes.size();
     report["loop_closures"] = keyframes.loop_closures;
     report["planes"] = map.planes.size();
+    report["losses"] = losses_of(pipeline);
     report["wall_s"] = clock.wall_s();
     report["cpu_s"] = clock.cpu_s();
     report["peak_rss_mb"] = peak_rss_mb();

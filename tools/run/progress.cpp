@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <string>
 
+#include "messages/process.hpp"
 #include "run/input.hpp"
 #include "run/pipeline.hpp"
 
@@ -15,7 +16,9 @@ Progress::Progress(bool quiet)
     : quiet_(quiet),
       terminal_(::isatty(STDERR_FILENO) == 1),
       start_(std::chrono::steady_clock::now()),
-      last_(start_) {}
+      last_(start_) {
+    if (terminal_ && !quiet_) log_over_a_drawn_line(true);
+}
 
 void Progress::show(const Input& input, Pipeline& pipeline) {
     if (quiet_) return;
@@ -40,6 +43,7 @@ void Progress::show(const Input& input, Pipeline& pipeline) {
 void Progress::end() {
     if (drawn_) std::fputs("\n", stderr);
     drawn_ = false;
+    log_over_a_drawn_line(false);
 }
 
 }  // namespace planemap

@@ -5,6 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "run/losses.hpp"
+
 namespace planemap {
 
 namespace {
@@ -99,6 +101,7 @@ std::string report_markdown(const Json& report) {
     try {
         std::string out = "# planemap: " + report.at("input").get<std::string>() + "\n\n";
         add_tracking(report, out);
+        out += losses_markdown(report);
         add_sizes(report, out);
         add_times(report, out);
         return out;
