@@ -14,7 +14,10 @@ bool StreamGuard::admits(std::int32_t seq, std::optional<std::int64_t> utime,
     message.checksum = checksum_of(bytes);
     const Verdict verdict = guard_.judge(message);
     if (!guard_.news().empty()) spdlog::warn("{}", guard_.news());
-    if (verdict == Verdict::kRepeated) return false;
+    if (verdict == Verdict::kRepeated) {
+        if (main_stream_) status_.lost(things_ + " that came twice");
+        return false;
+    }
     if (main_stream_ && verdict != Verdict::kForeign) status_.received(message.seq);
     if (verdict != Verdict::kForeign && verdict != Verdict::kWentBack) return true;
     status_.lost(things_ +
