@@ -18,7 +18,7 @@ GraphShell::GraphShell(Bus& bus, const GraphOptions& options, Optimising optimis
 void GraphShell::on_keyframe(const RawMessage& message) {
     const keyframe_t received = decode<keyframe_t>(message.bytes);
     const Keyframe keyframe = from_message(received);
-    status_.received(static_cast<std::uint32_t>(received.seq));
+    if (!keyframe_guard_.admits(received.seq, received.utime, message.bytes)) return;
     try {
         const ModuleStatus::Work work(status_);
         if (optimising_ == Optimising::kInHandler)
@@ -40,6 +40,7 @@ void GraphShell::start_if_due() {
 
 int GraphShell::poll() {
     constexpr int kIdleMs = 100, kRunningMs = 10;
+    republish_if_due();
     if (!running_) return kIdleMs;
     if (done_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return kRunningMs;
     done_.get();
@@ -64,9 +65,17 @@ void GraphShell::finish() {
     publish();
 }
 
+/// For those who come late while the camera stands still: the same message again, which is no work.
+void GraphShell::republish_if_due() {
+    if (published_us_ == 0 || now_us() - published_us_ < kRepeat_us) return;
+    bus_.publish(channels::kTrajectory, to_message(graph_.trajectory(), seq_ - 1));
+    published_us_ = now_us();
+}
+
 void GraphShell::publish() {
     const KeyframeTrajectory& trajectory = graph_.trajectory();
     bus_.publish(channels::kTrajectory, to_message(trajectory, seq_++));
+    published_us_ = now_us();
     status_.published();
     status_.set_text(std::to_string(trajectory.keyframes.size()) + " keyframes, " +
                      std::to_string(trajectory.loop_closures) + " loop closures");

@@ -5,7 +5,9 @@
 #include <optional>
 
 #include "graph/graph.hpp"
+#include "messages/channels.hpp"
 #include "messages/process.hpp"
+#include "messages/stream_guard.hpp"
 
 namespace planemap {
 
@@ -21,7 +23,8 @@ class GraphShell : public Shell {
     GraphShell(Bus& bus, const GraphOptions& options, Optimising optimising = Optimising::kInHandler);
 
     ModuleStatus& status() override { return status_; }
-    /// Publishes what the background has finished, and gives it what is due.
+    /// Publishes what the background has finished, gives it what is due, and repeats the trajectory when a
+    /// second has passed without one.
     int poll() override;
     /// Waits for the background, optimises once more and publishes the result.
     void finish() override;
@@ -31,6 +34,7 @@ class GraphShell : public Shell {
     void on_keyframe(const RawMessage& message);
     void start_if_due();
     void publish();
+    void republish_if_due();
 
     Bus& bus_;
     Optimising optimising_;
@@ -38,7 +42,9 @@ class GraphShell : public Shell {
     std::optional<GraphOptimisation> running_;  ///< owned by the background until done_ is ready
     std::future<void> done_;
     ModuleStatus status_{"graph"};
+    StreamGuard keyframe_guard_{channels::kKeyframe, "keyframes", status_};
     std::int32_t seq_ = 0;
+    std::int64_t published_us_ = 0;  ///< wall clock of the last trajectory; 0: none yet
 };
 
 /// Flags for the options, each named --<prefix>NAME.

@@ -21,7 +21,10 @@ constexpr const char* kFile = "plane_map.lcmlog";
 
 MapShell::MapShell(Bus& bus, const MapShellOptions& options)
     : bus_(bus), output_(options.output), mapper_(options.map) {
-    if (!options.start.empty()) mapper_.start_from(read_plane_map(options.start));
+    if (!options.start.empty()) {
+        mapper_.start_from(read_plane_map(options.start));
+        count_rejected("planes to start from that are out of range");
+    }
     if (!output_.empty()) {
         // A folder that cannot be written shows now, not after the run. An earlier map stays until there is
         // one.
@@ -37,14 +40,26 @@ MapShell::MapShell(Bus& bus, const MapShellOptions& options)
 
 void MapShell::on_keyframe(const RawMessage& message) {
     const keyframe_t received = decode<keyframe_t>(message.bytes);
-    status_.received(static_cast<std::uint32_t>(received.seq));
+    const Keyframe keyframe = from_message(received);
+    if (!keyframe_guard_.admits(received.seq, received.utime, message.bytes)) return;
     const std::size_t dropped = mapper_.dropped();
-    mapper_.add(from_message(received));
-    status_.dropped(static_cast<std::int64_t>(mapper_.dropped() - dropped));
+    mapper_.add(keyframe);
+    const auto more = static_cast<std::int64_t>(mapper_.dropped() - dropped);
+    status_.dropped(more);
+    status_.lost("keyframes whose pose never came", more);
+    count_rejected("regions that are not usable or out of range");
+}
+
+/// Counts what the mapper has rejected since the last time.
+void MapShell::count_rejected(const char* what) {
+    status_.lost(what, static_cast<std::int64_t>(mapper_.rejected() - rejected_));
+    rejected_ = mapper_.rejected();
 }
 
 void MapShell::on_trajectory(const RawMessage& message) {
-    const KeyframeTrajectory trajectory = from_message(decode<trajectory_t>(message.bytes));
+    const trajectory_t received = decode<trajectory_t>(message.bytes);
+    const KeyframeTrajectory trajectory = from_message(received);
+    if (!trajectory_guard_.admits(received.seq, std::nullopt, message.bytes)) return;
     {
         const ModuleStatus::Work work(status_);
         mapper_.update(trajectory);
@@ -54,6 +69,7 @@ void MapShell::on_trajectory(const RawMessage& message) {
 
 void MapShell::publish() {
     bus_.publish(channels::kMap, to_message(mapper_.map(), seq_++));
+    published_us_ = now_us();
     status_.published();
     unwritten_ = true;
     tell();
@@ -67,6 +83,11 @@ void MapShell::tell() {
 }
 
 int MapShell::poll() {
+    if (published_us_ != 0 && now_us() - published_us_ >= kRepeat_us) {
+        // For those who come late while the camera stands still: the same message again, which is no work.
+        bus_.publish(channels::kMap, to_message(mapper_.map(), seq_ - 1));
+        published_us_ = now_us();
+    }
     const std::int64_t period = write_error_.empty() ? kWritePeriodUs : kRetryPeriodUs;
     if (unwritten_ && !output_.empty() && now_us() - last_write_us_ >= period) try_write();
     return 100;

@@ -5,7 +5,9 @@
 #include <optional>
 
 #include "map/map.hpp"
+#include "messages/channels.hpp"
 #include "messages/process.hpp"
+#include "messages/stream_guard.hpp"
 
 namespace planemap {
 
@@ -26,6 +28,7 @@ class MapShell : public Shell {
     MapShell(Bus& bus, const MapShellOptions& options);
 
     ModuleStatus& status() override { return status_; }
+    /// Writes the map every few seconds, and repeats it on the bus when a second has passed without one.
     int poll() override;
     void finish() override;
 
@@ -34,6 +37,7 @@ class MapShell : public Shell {
   private:
     void on_keyframe(const RawMessage& message);
     void on_trajectory(const RawMessage& message);
+    void count_rejected(const char* what);
     void publish();
     void tell();
     void try_write();
@@ -43,7 +47,11 @@ class MapShell : public Shell {
     std::filesystem::path output_;
     PlaneMapper mapper_;
     ModuleStatus status_{"map"};
+    StreamGuard keyframe_guard_{channels::kKeyframe, "keyframes", status_};
+    StreamGuard trajectory_guard_{channels::kTrajectory, "trajectories", status_, false};
+    std::size_t rejected_ = 0;  ///< of the mapper's, those counted
     std::int32_t seq_ = 0;
+    std::int64_t published_us_ = 0;  ///< wall clock of the last map; 0: none yet
     std::int64_t last_write_us_ = 0;
     std::string write_error_;  ///< of the last attempt; empty if it went well
     bool unwritten_ = false;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "messages/frame_decoder.hpp"
 
-#include <libdeflate.h>
+#include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstring>
 #include <string>
@@ -20,7 +21,7 @@ namespace {
 using bot_core::image_t;
 using bot_core::images_t;
 
-constexpr const char* kSeqKey = "seq";
+constexpr const char *kSeqKey = "seq", *kSenderKey = "sender";
 
 class Timer {
   public:
@@ -37,6 +38,49 @@ class Timer {
 
 std::string size_text(int width, int height) {
     return std::to_string(width) + "x" + std::to_string(height);
+}
+
+bool is_depth(std::int16_t type) {
+    return type == images_t::DEPTH_MM || type == images_t::DEPTH_MM_ZIPPED;
+}
+
+/// The first image that `wanted` takes by its type; nullptr if there is none.
+template <typename Wanted>
+const image_t* find_image(const images_t& images, const Wanted& wanted) {
+    for (std::size_t i = 0; i < images.images.size(); ++i)
+        if (wanted(images.image_types[i])) return &images.images[i];
+    return nullptr;
+}
+
+template <typename T>
+std::optional<T> metadata(const image_t& image, const char* key) {
+    for (const auto& entry : image.metadata) {
+        if (entry.key != key || entry.value.size() != sizeof(T)) continue;
+        T value = 0;
+        std::memcpy(&value, entry.value.data(), sizeof(T));
+        return value;
+    }
+    return std::nullopt;
+}
+
+template <typename T>
+void add_metadata(image_t& image, const char* key, T value) {
+    bot_core::image_metadata_t entry;
+    entry.key = key;
+    entry.n = static_cast<std::int32_t>(sizeof(T));
+    entry.value.resize(sizeof(T));
+    std::memcpy(entry.value.data(), &value, sizeof(T));
+    image.metadata.push_back(std::move(entry));
+    image.nmetadata = static_cast<std::int32_t>(image.metadata.size());
+}
+
+bool fits(const image_t* image, const PinholeCamera& camera) {
+    return image == nullptr || (image->width == camera.width && image->height == camera.height);
+}
+
+bool fits(const images_t& images, const CameraInfo& camera) {
+    return fits(find_image(images, is_depth), camera.depth) &&
+           fits(find_image(images, [](std::int16_t type) { return type == images_t::LEFT; }), camera.color);
 }
 
 void require_size(const image_t& image, const PinholeCamera& camera, const char* which) {
@@ -103,7 +147,7 @@ Frame::Frame(images_t images, std::shared_ptr<const CameraInfo> camera, std::sha
         const std::int16_t type = images_.image_types[i];
         const image_t& image = images_.images[i];
         if (type == images_t::LEFT && color_ == nullptr) color_ = &image;
-        if ((type == images_t::DEPTH_MM || type == images_t::DEPTH_MM_ZIPPED) && raw_depth_ == nullptr) {
+        if (is_depth(type) && raw_depth_ == nullptr) {
             raw_depth_ = &image;
             zipped_ = type == images_t::DEPTH_MM_ZIPPED;
         }
@@ -129,24 +173,22 @@ std::int64_t Frame::color_utime() const {
     return color_ != nullptr ? color_->utime : 0;
 }
 
+std::size_t Frame::image_bytes() const {
+    std::size_t bytes = 0;
+    for (const image_t& image : images_.images) bytes += image.data.size();
+    return bytes;
+}
+
 std::optional<std::uint32_t> Frame::seq() const {
-    for (const auto& entry : raw_depth_->metadata) {
-        if (entry.key != kSeqKey || entry.value.size() != 4) continue;
-        std::uint32_t seq = 0;
-        std::memcpy(&seq, entry.value.data(), 4);
-        return seq;
-    }
-    return std::nullopt;
+    return metadata<std::uint32_t>(*raw_depth_, kSeqKey);
 }
 
 void set_seq(image_t& image, std::uint32_t seq) {
-    bot_core::image_metadata_t entry;
-    entry.key = kSeqKey;
-    entry.n = 4;
-    entry.value.resize(4);
-    std::memcpy(entry.value.data(), &seq, 4);
-    image.metadata.push_back(std::move(entry));
-    image.nmetadata = static_cast<std::int32_t>(image.metadata.size());
+    add_metadata(image, kSeqKey, seq);
+}
+
+void set_sender(image_t& image, std::uint64_t sender) {
+    add_metadata(image, kSenderKey, sender);
 }
 
 const DepthImage& Frame::depth() const {
@@ -179,28 +221,170 @@ const GrayImage* Frame::gray() const {
     return &*gray_;
 }
 
-FrameDecoder::FrameDecoder(Bus& bus, std::optional<CameraInfo> camera) {
-    if (camera) camera_ = std::make_shared<CameraInfo>(*camera);
-    bus.subscribe(channels::kCameraInfo, [this](const RawMessage& message) {
-        CameraInfo described = from_message(planemap::decode<camera_info_t>(message.bytes));
-        if (camera_ && *camera_ == described) return;
-        camera_ = std::make_shared<CameraInfo>(std::move(described));
-        clear();
-    });
+namespace {
+
+using Verdict = SenderGuard::Verdict;
+
+/// What becomes of a frame that is not taken, in words for ModuleStatus::lost().
+const char* loss(Verdict verdict) {
+    switch (verdict) {
+        case Verdict::kTake:
+            return nullptr;
+        case Verdict::kRepeated:
+        case Verdict::kLate:
+            return "frames that came late or twice";
+        case Verdict::kWentBack:
+            return "frames whose stamp went back";
+        case Verdict::kJumped:
+            return "frames at a jump in time";
+        case Verdict::kForeign:
+            return "frames of another sender";
+    }
+    return nullptr;
 }
 
-std::shared_ptr<const Frame> FrameDecoder::decode(const RawMessage& message) {
+void count(ModuleStatus& status, const MessageError& error) {
+    status.decode_error();
+    status.set_text(error.what());
+}
+
+}  // namespace
+
+FrameDecoder::FrameDecoder(Bus& bus, std::optional<CameraInfo> camera)
+    : bus_(bus), camera_is_given_(camera.has_value()) {
+    if (camera) camera_ = std::make_shared<CameraInfo>(*camera);
+    bus.subscribe(channels::kCameraInfo, [this](const RawMessage& message) { on_camera(message); });
+}
+
+void FrameDecoder::subscribe(ModuleStatus& status, int capacity, FrameHandler handler, bool main_stream) {
+    if (subscribers_.empty())
+        bus_.subscribe(
+            channels::kFrame, [this](const RawMessage& m) { on_frame(m); }, capacity);
+    subscribers_.push_back({&status, std::move(handler), main_stream});
+}
+
+void FrameDecoder::on_camera(const RawMessage& message) {
+    CameraInfo described = from_message(planemap::decode<camera_info_t>(message.bytes));
+    if (camera_ && *camera_ == described) {
+        described_utime_ = newest_utime_;
+        if (other_camera_ && !two_cameras_said_) {
+            spdlog::warn("two cameras are described on {}; the first is used while it lives",
+                         channels::kCameraInfo);
+            two_cameras_said_ = true;
+        }
+        other_camera_.reset();
+        return;
+    }
+    auto other = std::make_shared<const CameraInfo>(std::move(described));
+    if (!camera_ || camera_is_given_ || !newest_utime_) {
+        camera_ = std::move(other);
+        described_utime_ = newest_utime_;
+        camera_is_given_ = false;
+    } else {
+        other_camera_ = std::move(other);
+    }
+}
+
+/// Takes up the other description where the one in use has ended.
+void FrameDecoder::choose_camera(const images_t& images) {
+    if (!described_utime_) described_utime_ = images.utime;
+    const bool silent =
+        images.utime < *described_utime_ || images.utime - *described_utime_ >= SenderGuard::kSilence_us;
+    const bool only_other_fits = other_camera_ && !fits(images, *camera_) && fits(images, *other_camera_);
+    if (!other_camera_ || !(silent || only_other_fits)) return;
+    camera_ = std::move(other_camera_);
+    described_utime_ = images.utime;
+    two_cameras_said_ = false;
+}
+
+Verdict FrameDecoder::judge(const images_t& images, std::uint32_t checksum) {
+    const image_t* depth = find_image(images, is_depth);
+    const image_t* color = find_image(images, [](std::int16_t type) { return type == images_t::LEFT; });
+    SenderGuard::Message message;
+    message.sender = metadata<std::uint64_t>(*depth, kSenderKey);
+    message.seq = metadata<std::uint32_t>(*depth, kSeqKey);
+    message.utime = images.utime;
+    message.checksum = checksum;
+    // Of frames that lack colour the form is not known: a camera may lose its colour for a while.
+    if (color != nullptr) {
+        message.kind =
+            static_cast<std::uint32_t>(color->pixelformat) ^
+            (depth == find_image(images, [](std::int16_t type) { return type == images_t::DEPTH_MM; }) ? 1U
+                                                                                                       : 0U);
+    }
+    const int switches = guard_.switches();
+    const Verdict verdict = guard_.judge(message);
+    if (!guard_.news().empty()) spdlog::warn("{}", guard_.news());
+    if (guard_.switches() != switches && other_camera_)
+        described_utime_ = images.utime - SenderGuard::kSilence_us;
+    return verdict;
+}
+
+std::shared_ptr<const Frame> FrameDecoder::decode(const RawMessage& message) const {
     if (!camera_) return nullptr;
-    const std::uint32_t checksum = libdeflate_crc32(0, message.bytes.data(), message.bytes.size());
-    for (const Cached& cached : cache_) {
-        if (cached.frame && cached.bytes == message.bytes.size() && cached.checksum == checksum)
-            return cached.frame;
+    return std::make_shared<const Frame>(planemap::decode<images_t>(message.bytes), camera_, decode_ms_);
+}
+
+/// The frame, if it is the next one of the sender that is followed; else why not.
+std::pair<std::shared_ptr<const Frame>, Verdict> FrameDecoder::take(const RawMessage& message) {
+    images_t images = planemap::decode<images_t>(message.bytes);
+    const image_t* depth = find_image(images, is_depth);
+    const std::uint32_t checksum = checksum_of(message.bytes);
+    const bool is_other = other_camera_ && !fits(images, *camera_) && fits(images, *other_camera_);
+    if (depth != nullptr && !is_other && !fits(images, *camera_) &&
+        metadata<std::uint64_t>(*depth, kSenderKey) && judge(images, checksum) == Verdict::kForeign) {
+        return {nullptr, Verdict::kForeign};
     }
     auto frame =
-        std::make_shared<const Frame>(planemap::decode<images_t>(message.bytes), camera_, decode_ms_);
-    cache_[next_] = {message.bytes.size(), checksum, frame};
-    next_ = (next_ + 1) % cache_.size();
-    return frame;
+        std::make_shared<const Frame>(std::move(images), is_other ? other_camera_ : camera_, decode_ms_);
+    const Verdict verdict = judge(frame->images_, checksum);
+    if (verdict == Verdict::kTake) {
+        choose_camera(frame->images_);
+        newest_utime_ = frame->utime();
+        if (frame->camera_ != camera_)
+            frame = std::make_shared<const Frame>(frame->images_, camera_, decode_ms_);
+    }
+    return {std::move(frame), verdict};
+}
+
+void FrameDecoder::on_frame(const RawMessage& message) {
+    for (const Subscriber& subscriber : subscribers_) subscriber.status->came();
+    if (!camera_) {
+        for (const Subscriber& subscriber : subscribers_) {
+            ModuleStatus& status = *subscriber.status;
+            if (subscriber.main_stream) status.received();
+            status.dropped();
+            status.lost("frames before their camera was described");
+            status.set_text(std::string("no ") + channels::kCameraInfo + " yet");
+        }
+        return;
+    }
+    try {
+        const auto [frame, verdict] = take(message);
+        for (const Subscriber& subscriber : subscribers_) {
+            ModuleStatus& status = *subscriber.status;
+            if (subscriber.main_stream && verdict != Verdict::kForeign) status.received(frame->seq());
+            if (verdict == Verdict::kTake) continue;
+            if (subscriber.main_stream) status.dropped();
+            status.lost(loss(verdict));
+        }
+        if (verdict == Verdict::kTake) deliver(frame);
+    } catch (const MessageError& error) {
+        for (const Subscriber& subscriber : subscribers_) count(*subscriber.status, error);
+        throw;
+    }
+}
+
+/// One subscriber's trouble with a frame is not the next one's.
+void FrameDecoder::deliver(const std::shared_ptr<const Frame>& frame) {
+    for (const Subscriber& subscriber : subscribers_) {
+        try {
+            subscriber.handler(frame);
+        } catch (const MessageError& error) {
+            count(*subscriber.status, error);
+            bus_.report(channels::kFrame, error.what());
+        }
+    }
 }
 
 }  // namespace planemap

@@ -1,16 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
 #include <bot_core/images_t.hpp>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "core/camera.hpp"
 #include "core/histogram.hpp"
 #include "core/image.hpp"
 #include "messages/bus.hpp"
+#include "messages/channels.hpp"
+#include "messages/module_status.hpp"
+#include "messages/sender_guard.hpp"
 
 namespace planemap {
 
@@ -32,11 +37,16 @@ class Frame {
     /// The sender's count of frames, if it sent one.
     std::optional<std::uint32_t> seq() const;
 
+    /// Of the images as they came: what keeping the frame takes, apart from what was decoded.
+    std::size_t image_bytes() const;
+
     const DepthImage& depth() const;           ///< depth camera's pixels, raw units
     const DepthImage& depth_in_color() const;  ///< registered to the colour camera's pixels, raw units
     const GrayImage* gray() const;             ///< luma; nullptr without colour
 
   private:
+    friend class FrameDecoder;
+
     bot_core::images_t images_;
     std::shared_ptr<const CameraInfo> camera_;
     std::shared_ptr<Histogram> decode_ms_;
@@ -48,36 +58,61 @@ class Frame {
     mutable std::optional<GrayImage> gray_;
 };
 
-/// Turns messages into frames, each decoded once in a process however many shells ask: the last few frames
-/// are kept. Subscribes to the camera's description itself.
+/// Turns messages into frames, each decoded once in a process however many shells take it. Subscribes to the
+/// camera's description itself.
+///
+/// Frames and descriptions may come from several senders at once, late, twice or with time going back: the
+/// subscribers get those of one sender in order (see SenderGuard), and their statuses count the rest. A
+/// description that differs from the one in use waits while that one lives: until it was not repeated for
+/// SenderGuard::kSilence_us, another sender's frames are followed, or frames come that only the new one fits.
 class FrameDecoder {
   public:
+    using FrameHandler = std::function<void(std::shared_ptr<const Frame>)>;
+
     /// A camera given here is used until the bus describes another one.
     explicit FrameDecoder(Bus& bus, std::optional<CameraInfo> camera = std::nullopt);
 
-    /// nullptr when the camera is not described yet. Throws MessageError for a message that is no usable
-    /// frame.
-    std::shared_ptr<const Frame> decode(const RawMessage& message);
+    /// Calls the handler for each frame, in the order of subscription. `status` counts what comes and what is
+    /// not used, and a MessageError that the handler throws; as received only where frames are the module's
+    /// main stream. At most `capacity` messages wait, the first subscriber's; then the newest is dropped, but
+    /// on memq:// none is.
+    void subscribe(ModuleStatus& status, int capacity, FrameHandler handler, bool main_stream = true);
+
+    /// One message, whoever sent it; nullptr when the camera is not described yet. Throws MessageError for a
+    /// message that is no usable frame.
+    std::shared_ptr<const Frame> decode(const RawMessage& message) const;
 
     const CameraInfo* camera() const { return camera_.get(); }
     /// Milliseconds that images took to decode and register, one entry a frame that was decoded.
     const Histogram& decode_ms() const { return *decode_ms_; }
-    /// Forgets the frames kept, so that decode_ms() counts them too.
-    void clear() { cache_.fill({}); }
 
   private:
-    struct Cached {
-        std::size_t bytes = 0;
-        std::uint32_t checksum = 0;
-        std::shared_ptr<const Frame> frame;
+    struct Subscriber {
+        ModuleStatus* status;
+        FrameHandler handler;
+        bool main_stream;
     };
-    std::shared_ptr<const CameraInfo> camera_;
+    void on_camera(const RawMessage& message);
+    void on_frame(const RawMessage& message);
+    SenderGuard::Verdict judge(const bot_core::images_t& images, std::uint32_t checksum);
+    void choose_camera(const bot_core::images_t& images);
+    std::pair<std::shared_ptr<const Frame>, SenderGuard::Verdict> take(const RawMessage& message);
+    void deliver(const std::shared_ptr<const Frame>& frame);
+
+    Bus& bus_;
+    std::shared_ptr<const CameraInfo> camera_, other_camera_;  ///< in use; another one that was described
+    bool camera_is_given_ = false, two_cameras_said_ = false;
+    std::optional<std::int64_t> newest_utime_,
+        described_utime_;  ///< of frames; when camera_ was described last
+    SenderGuard guard_{channels::kFrame};
+    std::vector<Subscriber> subscribers_;
     std::shared_ptr<Histogram> decode_ms_ = std::make_shared<Histogram>();
-    std::array<Cached, 8> cache_;
-    std::size_t next_ = 0;
 };
 
 /// Adds the "seq" metadata that Frame::seq() reads.
 void set_seq(bot_core::image_t& image, std::uint32_t seq);
+/// Adds the "sender" metadata: an id that a sender draws at its start, so that receivers can tell it from
+/// another one (see SenderGuard).
+void set_sender(bot_core::image_t& image, std::uint64_t sender);
 
 }  // namespace planemap

@@ -14,7 +14,8 @@ namespace planemap {
 
 namespace {
 constexpr std::int64_t kPeriodUs = 1000000;
-}
+constexpr std::int64_t kAnswerUs = 3000000;  // by then something should have come out of what came in
+}  // namespace
 
 double thread_cpu_ms() {
     timespec time = {};
@@ -31,6 +32,7 @@ ModuleStatus::ModuleStatus(std::string module)
 
 Bus::Handler ModuleStatus::guard(Bus::Handler handler) {
     return [this, handler = std::move(handler)](const RawMessage& message) {
+        came();
         try {
             handler(message);
         } catch (const MessageError& error) {
@@ -43,8 +45,7 @@ Bus::Handler ModuleStatus::guard(Bus::Handler handler) {
 
 void ModuleStatus::received(std::optional<std::uint32_t> seq) {
     ++received_;
-    if (seq && last_seq_ && *seq > *last_seq_ + 1) gaps_ += *seq - *last_seq_ - 1;
-    if (seq) last_seq_ = seq;
+    if (seq) seqs_.add(*seq);
 }
 
 void ModuleStatus::lost(const std::string& what, std::int64_t count) {
@@ -59,11 +60,23 @@ void ModuleStatus::lost(const std::string& what, std::int64_t count) {
 /// The text with what was lost, and what ails the bus, behind it.
 std::string ModuleStatus::full_text() const {
     std::string text = text_;
-    if (!bus_trouble_.empty()) text += (text.empty() ? "" : "; ") + bus_trouble_;
-    for (const auto& [what, count] : losses_) {
-        text += (text.empty() ? "" : "; ") + std::string("lost ") + std::to_string(count) + " " + what;
-    }
+    const auto add = [&](const std::string& more) { text += (text.empty() ? "" : "; ") + more; };
+    if (!bus_trouble_.empty()) add(bus_trouble_);
+    for (const auto& [what, count] : losses_) add("lost " + std::to_string(count) + " " + what);
+    if (seqs_.restarts() > 0) add("its sender started again, times: " + std::to_string(seqs_.restarts()));
     return text;
+}
+
+/// What the module has been doing since its last status.
+std::int8_t ModuleStatus::state(std::int64_t now_us) const {
+    const std::int64_t inputs = received_ - window_received_, outputs = published_ - window_published_;
+    const std::int64_t unusable = dropped_ + decode_errors_ - window_unusable_;
+    if (came_ == 0 && received_ == 0 && published_ == 0) return module_status_t::WAITING;
+    if (outputs > 0) return module_status_t::RUNNING;
+    if (unusable > 0 && unusable >= inputs) return module_status_t::FAILING;
+    if (inputs == 0) return module_status_t::IDLE;
+    const bool unanswered = unanswered_since_us_ != 0 && now_us - unanswered_since_us_ >= kAnswerUs;
+    return unanswered ? module_status_t::FAILING : module_status_t::RUNNING;
 }
 
 ModuleStatus::Work::~Work() {
@@ -90,13 +103,8 @@ module_status_t ModuleStatus::message(std::int64_t now_us, bool stopped) const {
     m.published = published_;
     m.dropped = dropped_;
     m.decode_errors = decode_errors_;
-    m.gaps = gaps_;
-    const bool working = inputs > 0 || published_ > window_published_;
-    m.state = stopped                                         ? module_status_t::STOPPED
-              : received_ == 0 && published_ == 0             ? module_status_t::WAITING
-              : !working                                      ? module_status_t::IDLE
-              : inputs > 0 && published_ == window_published_ ? module_status_t::FAILING
-                                                              : module_status_t::RUNNING;
+    m.gaps = seqs_.missed();
+    m.state = stopped ? std::int8_t{module_status_t::STOPPED} : state(now_us);
     return m;
 }
 
@@ -107,7 +115,12 @@ bool ModuleStatus::publish_if_due(Bus& bus, std::int64_t now_us, bool stopped) {
     last_ = message(now_us, stopped);
     bus.publish(channel_, last_);
     ++seq_;
+    if (published_ > window_published_)
+        unanswered_since_us_ = 0;
+    else if (received_ > window_received_ && unanswered_since_us_ == 0)
+        unanswered_since_us_ = window_start_us_;
     window_start_us_ = now_us;
+    window_unusable_ = dropped_ + decode_errors_;
     window_received_ = received_;
     window_published_ = published_;
     window_ms_ = Histogram();
@@ -116,14 +129,18 @@ bool ModuleStatus::publish_if_due(Bus& bus, std::int64_t now_us, bool stopped) {
 
 std::string ModuleStatus::line() const {
     static constexpr const char* kStates[] = {"waiting", "running", "idle", "failing", "stopped"};
+    // What came since the last status is newer than its state.
+    const bool news = received_ > window_received_ || last_.state == module_status_t::WAITING;
+    const std::int8_t now =
+        news && last_.state != module_status_t::STOPPED ? state(window_start_us_) : last_.state;
     char line[256];
     std::snprintf(
         line, sizeof(line),
         "%s: %.1f Hz, %.2f ms (p95 %.2f), %lld in, %lld out, %lld dropped, %lld corrupt, %lld missed",
-        kStates[last_.state], last_.rate_hz, static_cast<double>(last_.latency_median_ms),
+        kStates[now], last_.rate_hz, static_cast<double>(last_.latency_median_ms),
         static_cast<double>(last_.latency_p95_ms), static_cast<long long>(received_),
         static_cast<long long>(published_), static_cast<long long>(dropped_),
-        static_cast<long long>(decode_errors_), static_cast<long long>(gaps_));
+        static_cast<long long>(decode_errors_), static_cast<long long>(seqs_.missed()));
     const std::string text = full_text();
     return text.empty() ? line : std::string(line) + "; " + text;
 }

@@ -10,6 +10,7 @@
 
 #include "core/histogram.hpp"
 #include "messages/bus.hpp"
+#include "messages/seq_counter.hpp"
 
 namespace planemap {
 
@@ -25,8 +26,11 @@ class ModuleStatus {
     /// Wraps a handler: an input that throws MessageError counts as a decode error (and goes on to the bus,
     /// which logs it).
     Bus::Handler guard(Bus::Handler handler);
+    /// A message came, whatever becomes of it. guard() says so itself.
+    void came() { ++came_; }
 
     /// One input of the module's main stream; its sequence number, where there is one, shows what was missed.
+    /// Inputs that are dropped count too.
     void received(std::optional<std::uint32_t> seq = std::nullopt);
     void published() { ++published_; }
     void dropped(std::int64_t count = 1) { dropped_ += count; }
@@ -72,14 +76,17 @@ class ModuleStatus {
 
   private:
     module_status_t message(std::int64_t now_us, bool stopped) const;
+    std::int8_t state(std::int64_t now_us) const;
     std::string full_text() const;
 
     std::string module_, channel_, text_, bus_trouble_;
-    std::int64_t received_ = 0, published_ = 0, dropped_ = 0, decode_errors_ = 0, gaps_ = 0;
+    std::int64_t came_ = 0, received_ = 0, published_ = 0, dropped_ = 0, decode_errors_ = 0;
     std::map<std::string, std::int64_t> losses_;
-    std::optional<std::uint32_t> last_seq_;
+    SeqCounter seqs_;
     Histogram work_ms_, work_cpu_ms_, window_ms_;
-    std::int64_t window_start_us_ = 0, window_received_ = 0, window_published_ = 0;
+    // Since the last status.
+    std::int64_t window_start_us_ = 0, window_received_ = 0, window_published_ = 0, window_unusable_ = 0;
+    std::int64_t unanswered_since_us_ = 0;  ///< inputs came since then, and nothing left; 0: none
     module_status_t last_;
     std::int32_t seq_ = 0;
 };

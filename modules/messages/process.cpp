@@ -24,7 +24,10 @@ void on_signal(int signal) {
     }
 }
 
+constexpr const char* kLogPattern = "%n: %^%l%$: %v";
 constexpr std::int64_t kLinePeriodUs = 5000000;
+constexpr std::int64_t kDrainUs = 500000;  // at a stop, for messages that wait
+constexpr int kQuietMs = 20;               // without a message: none waits
 
 void run_loop(Shell& shell, Bus& bus) {
     std::int64_t last_line = now_us();
@@ -51,6 +54,10 @@ void serve(Shell& shell, Bus& bus) {
     }
     try {
         if (!bus.connected()) bus.handle(0);  // a last attempt, for what finish() sends
+        // What was received before the signal, and what those who stopped before still sent, is handled.
+        const std::int64_t until = now_us() + kDrainUs;
+        while (bus.handle(kQuietMs) && now_us() < until) {
+        }
         shell.finish();
     } catch (...) {
         if (!failure) failure = std::current_exception();
@@ -80,9 +87,13 @@ void catch_stop_signals() {
 void start_logging(const std::string& program, bool verbose) {
     auto logger = spdlog::get(program);
     if (!logger) logger = spdlog::stderr_color_mt(program);
-    logger->set_pattern("%n: %^%l%$: %v");
+    logger->set_pattern(kLogPattern);
     logger->set_level(verbose ? spdlog::level::debug : spdlog::level::info);
     spdlog::set_default_logger(logger);
+}
+
+void log_over_a_drawn_line(bool drawn) {
+    spdlog::set_pattern(std::string(drawn ? "\r\033[K" : "") + kLogPattern);
 }
 
 int run_main(const std::string& program, const std::function<int()>& body) {

@@ -12,6 +12,9 @@
 
 namespace planemap {
 
+/// A result of which a second passed without a new one is sent again, so that those who come late have it.
+inline constexpr std::int64_t kRepeat_us = 1000000;
+
 /// A module on the bus. Its constructor subscribes; its handlers run in Bus::handle().
 class Shell {
   public:
@@ -32,6 +35,9 @@ void catch_stop_signals();
 
 /// Logging as all programs do it: to stderr, a line an entry, the program's name first.
 void start_logging(const std::string& program, bool verbose);
+
+/// While a line is being redrawn in place on the terminal, log lines overwrite it instead of following it.
+void log_over_a_drawn_line(bool drawn);
 
 /// Runs body, and turns an exception that reaches the top into one line on stderr and exit code 1.
 int run_main(const std::string& program, const std::function<int()>& body);

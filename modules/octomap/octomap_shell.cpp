@@ -30,17 +30,16 @@ OctomapShell::OctomapShell(Bus& bus, std::shared_ptr<FrameDecoder> decoder, cons
                            Building building)
     : bus_(bus), decoder_(std::move(decoder)), builder_(options), resolution_m_(options.resolution_m) {
     if (building == Building::kInBackground) worker_ = std::make_unique<OctomapWorker>(builder_);
-    bus_.subscribe(channels::kFrame, status_.guard([this](const RawMessage& m) { on_frame(m); }), 8);
+    decoder_->subscribe(
+        status_, 8, [this](const auto& frame) { on_frame(frame); }, false);
     bus_.subscribe(channels::kKeyframe, status_.guard([this](const RawMessage& m) { on_keyframe(m); }), 256);
     bus_.subscribe(channels::kTrajectory, status_.guard([this](const RawMessage& m) { on_trajectory(m); }),
                    16);
 }
 
-void OctomapShell::on_frame(const RawMessage& message) {
-    auto frame = decoder_->decode(message);
-    if (!frame) return;
-    recent_.push_back({std::move(frame), message.bytes.size()});
-    recent_bytes_ += message.bytes.size();
+void OctomapShell::on_frame(const std::shared_ptr<const Frame>& frame) {
+    recent_.push_back({frame, frame->image_bytes()});
+    recent_bytes_ += recent_.back().bytes;
     const std::size_t most = worker_ ? kFramesInBackground : kFramesInHandler;
     while (recent_.size() > most || (recent_.size() > kFramesInHandler && recent_bytes_ > kRecentBytes)) {
         recent_bytes_ -= recent_.front().bytes;
@@ -55,7 +54,7 @@ void OctomapShell::drop(const char* reason, std::int64_t count) {
 
 void OctomapShell::on_keyframe(const RawMessage& message) {
     const keyframe_t received = decode<keyframe_t>(message.bytes);
-    status_.received(static_cast<std::uint32_t>(received.seq));
+    if (!keyframe_guard_.admits(received.seq, received.utime, message.bytes)) return;
     const auto recent = std::find_if(recent_.begin(), recent_.end(),
                                      [&](const Recent& r) { return r.frame->utime() == received.utime; });
     if (recent == recent_.end()) return drop("keyframes whose frame was gone");
@@ -72,7 +71,9 @@ void OctomapShell::on_keyframe(const RawMessage& message) {
 }
 
 void OctomapShell::on_trajectory(const RawMessage& message) {
-    const KeyframeTrajectory trajectory = from_message(decode<trajectory_t>(message.bytes));
+    const trajectory_t received = decode<trajectory_t>(message.bytes);
+    const KeyframeTrajectory trajectory = from_message(received);
+    if (!trajectory_guard_.admits(received.seq, std::nullopt, message.bytes)) return;
     last_utime_ = trajectory.utime;
     last_revision_ = trajectory.revision;
     if (!worker_) builder_.update(trajectory);

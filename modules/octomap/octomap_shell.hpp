@@ -7,8 +7,10 @@
 #include <optional>
 
 #include "core/keyframe.hpp"
+#include "messages/channels.hpp"
 #include "messages/frame_decoder.hpp"
 #include "messages/process.hpp"
+#include "messages/stream_guard.hpp"
 #include "octomap/octomap_builder.hpp"
 #include "octomap/octomap_worker.hpp"
 
@@ -49,7 +51,7 @@ class OctomapShell : public Shell {
         std::shared_ptr<const StoredScan> scan;
     };
 
-    void on_frame(const RawMessage& message);
+    void on_frame(const std::shared_ptr<const Frame>& frame);
     void on_keyframe(const RawMessage& message);
     void on_trajectory(const RawMessage& message);
     void add(int id, const Waiting& keyframe, const Pose& world_from_camera);
@@ -63,6 +65,8 @@ class OctomapShell : public Shell {
     OctomapBuilder builder_;
     std::unique_ptr<OctomapWorker> worker_;  ///< null when built in the handler
     ModuleStatus status_{"octomap"};
+    StreamGuard keyframe_guard_{channels::kKeyframe, "keyframes", status_};
+    StreamGuard trajectory_guard_{channels::kTrajectory, "trajectories", status_, false};
     std::deque<Recent> recent_;
     std::size_t recent_bytes_ = 0;
     std::map<int, Waiting> waiting_;  ///< by keyframe id

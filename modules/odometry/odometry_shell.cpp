@@ -2,6 +2,7 @@
 #include "odometry/odometry_shell.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "messages/channels.hpp"
 #include "messages/decode.hpp"
@@ -30,18 +31,12 @@ const char* fault_of_depth(const Frame& frame) {
 
 OdometryShell::OdometryShell(Bus& bus, std::shared_ptr<FrameDecoder> decoder, const OdometryOptions& options)
     : bus_(bus), decoder_(std::move(decoder)), odometry_(options) {
-    bus_.subscribe(channels::kFrame, status_.guard([this](const RawMessage& m) { on_frame(m); }), 8);
+    decoder_->subscribe(status_, 8, [this](auto frame) { on_frame(std::move(frame)); });
     bus_.subscribe(channels::kRegions, status_.guard([this](const RawMessage& m) { on_regions(m); }), 8);
 }
 
-void OdometryShell::on_frame(const RawMessage& message) {
-    auto frame = decoder_->decode(message);
-    if (!frame) {
-        status_.dropped();
-        status_.set_text(std::string("no ") + channels::kCameraInfo + " yet");
-        return;
-    }
-    status_.received(frame->seq());
+void OdometryShell::on_frame(std::shared_ptr<const Frame> frame) {
+    heard_ = true;
     Waiting input{std::move(frame), std::nullopt};
     const auto early = std::find_if(early_regions_.begin(), early_regions_.end(),
                                     [&](const FrameRegions& r) { return r.utime == input.frame->utime(); });
@@ -56,27 +51,47 @@ void OdometryShell::on_frame(const RawMessage& message) {
 void OdometryShell::on_regions(const RawMessage& message) {
     FrameRegions regions = from_message(decode<planar_regions_t>(message.bytes));
     missing_ = 0;
+    heard_ = true;
     const auto input = std::find_if(waiting_.begin(), waiting_.end(),
                                     [&](const Waiting& w) { return w.frame->utime() == regions.utime; });
     if (input != waiting_.end()) {
         input->regions = std::move(regions);
+        // Regions come in the frames' order: none will come for those before.
+        for (auto before = input - waiting_.begin(); before > 0; --before) process_front();
         process_ready(kMaxWaiting);
         return;
     }
     early_regions_.push_back(std::move(regions));
     if (early_regions_.size() > kMaxWaiting) {
-        early_regions_.pop_front();  // its frame was handled without it, or never came
-        status_.dropped();
+        early_regions_.pop_front();
+        status_.lost("regions that no frame waited for");
     }
 }
 
 void OdometryShell::process_ready(std::size_t max_waiting) {
     while (!waiting_.empty() && (waiting_.front().regions || waiting_.size() > max_waiting)) {
-        const Waiting input = std::move(waiting_.front());
-        waiting_.pop_front();
-        if (!input.regions) ++missing_;
-        process(input);
+        if (!waiting_.front().regions) ++missing_;
+        process_front();
     }
+}
+
+void OdometryShell::process_front() {
+    const Waiting input = std::move(waiting_.front());
+    waiting_.pop_front();
+    if (!input.regions) status_.lost("frames handled without their regions");
+    process(input);
+}
+
+int OdometryShell::poll() {
+    constexpr int kIdle_ms = 100, kWaiting_ms = 20;
+    // While messages come one after the other, the regions may be among those that the bus holds.
+    const bool quiet = !std::exchange(heard_, false);
+    if (quiet && !waiting_.empty() && Clock::now() - waiting_.front().since > kMaxWait) {
+        ++missing_;
+        process_front();
+        process_ready(missing_ >= kMaxMissing ? 0 : kMaxWaiting);
+    }
+    return waiting_.empty() ? kIdle_ms : kWaiting_ms;
 }
 
 void OdometryShell::process(const Waiting& input) {

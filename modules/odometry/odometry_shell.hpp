@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <chrono>
 #include <deque>
 #include <memory>
 
@@ -12,8 +13,9 @@
 namespace planemap {
 
 /// OPENNI_FRAME and PLANEMAP_REGIONS of the same utime to PLANEMAP_ODOMETRY, POSE_BODY and PLANEMAP_KEYFRAME.
-/// A frame waits for its regions until `kMaxWaiting` frames wait; then the oldest goes on without. While no
-/// regions come at all (no segmentation on the bus), frames do not wait.
+/// A frame waits for its regions until a later one's come, kMaxWaiting frames wait, or it has waited for
+/// kMaxWait; then it goes on without. After kMaxMissing of these in a row (no segmentation on the bus) frames
+/// do not wait, until regions come again.
 class OdometryShell : public Shell {
   public:
     OdometryShell(Bus& bus, std::shared_ptr<FrameDecoder> decoder, const OdometryOptions& options);
@@ -23,20 +25,27 @@ class OdometryShell : public Shell {
     static constexpr const char* kBesideColor = "untracked frames whose depth lies beside the colour image";
 
     ModuleStatus& status() override { return status_; }
+    /// Goes on with what has waited for too long.
+    int poll() override;
     /// Handles the frames that still wait.
     void finish() override;
 
   private:
-    static constexpr std::size_t kMaxWaiting = 3;
+    using Clock = std::chrono::steady_clock;
+    /// More than the segmentation has in its queue and at work: it drops what comes beyond that.
+    static constexpr std::size_t kMaxWaiting = 8;
+    static constexpr std::chrono::milliseconds kMaxWait{500};
     static constexpr int kMaxMissing = 10;  ///< frames in a row without regions, then nothing waits
 
     struct Waiting {
         std::shared_ptr<const Frame> frame;
         std::optional<FrameRegions> regions;
+        Clock::time_point since = Clock::now();
     };
-    void on_frame(const RawMessage& message);
+    void on_frame(std::shared_ptr<const Frame> frame);
     void on_regions(const RawMessage& message);
     void process_ready(std::size_t max_waiting);
+    void process_front();
     void process(const Waiting& input);
 
     Bus& bus_;
@@ -45,7 +54,8 @@ class OdometryShell : public Shell {
     ModuleStatus status_{"odometry"};
     std::deque<Waiting> waiting_;
     std::deque<FrameRegions> early_regions_;  ///< of frames that have not come yet; at most kMaxWaiting
-    int missing_ = kMaxMissing;
+    int missing_ = 0;                         ///< frames in a row that waited in vain
+    bool heard_ = false;                      ///< a message came since the last poll()
     std::int32_t odometry_seq_ = 0, keyframe_seq_ = 0;
 };
 

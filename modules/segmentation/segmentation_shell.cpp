@@ -10,24 +10,17 @@ SegmentationShell::SegmentationShell(Bus& bus, std::shared_ptr<FrameDecoder> dec
                                      const SegmentationOptions& options)
     : bus_(bus), decoder_(std::move(decoder)), segmenter_(make_segmenter(options)) {
     // A short queue: late regions are worth less than the next frame's.
-    bus_.subscribe(channels::kFrame, status_.guard([this](const RawMessage& m) { on_frame(m); }), 4);
+    decoder_->subscribe(status_, 4, [this](const auto& frame) { on_frame(*frame); });
 }
 
-void SegmentationShell::on_frame(const RawMessage& message) {
-    const auto frame = decoder_->decode(message);
-    if (!frame) {
-        status_.dropped();
-        status_.set_text(std::string("no ") + channels::kCameraInfo + " yet");
-        return;
-    }
-    status_.received(frame->seq());
-    const DepthImage& depth = frame->depth();
+void SegmentationShell::on_frame(const Frame& frame) {
+    const DepthImage& depth = frame.depth();
     FrameRegions regions;
-    regions.utime = frame->utime();
+    regions.utime = frame.utime();
     {
         const ModuleStatus::Work work(status_);
-        segmenter_->segment(depth, frame->camera(), segmentation_);
-        const Pose& camera_from_depth = frame->camera().color_from_depth;
+        segmenter_->segment(depth, frame.camera(), segmentation_);
+        const Pose& camera_from_depth = frame.camera().color_from_depth;
         for (const PlanarRegion& region : segmentation_.regions)
             regions.regions.push_back(camera_from_depth * region);
     }

@@ -18,7 +18,7 @@ class SegmentationShell : public Shell {
     ModuleStatus& status() override { return status_; }
 
   private:
-    void on_frame(const RawMessage& message);
+    void on_frame(const Frame& frame);
 
     Bus& bus_;
     std::shared_ptr<FrameDecoder> decoder_;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <stdexcept>
 
 #include "core/validation.hpp"
@@ -15,7 +16,12 @@ namespace planemap {
 
 namespace {
 constexpr std::int64_t kCameraPeriodUs = 1000000;
+
+std::uint64_t random_sender() {
+    std::random_device random;
+    return std::uint64_t{random()} << 32 | random();
 }
+}  // namespace
 
 void SensorShellOptions::validate() const {
     FieldErrors errors("sensor");
@@ -32,6 +38,7 @@ SensorShell::SensorShell(Bus& bus, std::unique_ptr<FrameSource> source, SensorSh
     options_.validate();
     for (const std::string& note : source_->notes()) spdlog::warn("{}", note);
     if (options_.live) ahead_ = std::make_unique<ReadAhead>(source_);
+    if (!bus_.in_process()) sender_ = random_sender();
 }
 
 /// The first fault of each kind is told at once; the status and the bus's complaints count them all.
@@ -156,6 +163,7 @@ void SensorShell::publish(const SensorFrame& frame) {
     images.images.push_back(
         depth_image_message(frame.depth, frame.utime, zipped ? DepthEncoding::kZipped : DepthEncoding::kRaw));
     set_seq(images.images.back(), static_cast<std::uint32_t>(frames_));
+    if (sender_) set_sender(images.images.back(), *sender_);
     images.n_images = static_cast<std::int32_t>(images.images.size());
     bus_.publish(channels::kFrame, images);
     last_utime_ = frame.utime;

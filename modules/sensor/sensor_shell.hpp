@@ -65,6 +65,8 @@ class SensorShell : public Shell {
     SensorShellOptions options_;
     std::unique_ptr<ReadAhead> ahead_;  ///< only live
     ModuleStatus status_{"sensor"};
+    std::optional<std::uint64_t> sender_;  ///< tells this sender from another; none in one process, where a
+                                           ///< run gives the same bytes again
     SensorFrame frame_;
     bool pending_ = false, ended_ = false;
     std::int64_t frames_ = 0, broken_ = 0, colorless_ = 0, ends_missing_ = 0;

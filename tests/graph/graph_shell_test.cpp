@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "graph/graph_shell.hpp"
 
+#include <chrono>
+#include <thread>
+
 #include "graph/synthetic.hpp"
 #include "shell_fixture.hpp"
 
@@ -23,13 +26,55 @@ TEST_F(GraphShellTest, PublishesTheTrajectoryAmongCorruptMessages) {
         publish_corrupt(channels::kKeyframe, to_message(keyframe, id));
         bus_.publish(channels::kKeyframe, to_message(keyframe, id));
     }
-    bus_.publish(channels::kKeyframe, to_message(keyframe, 3));  // the same id again: refused
+    bus_.publish(channels::kKeyframe, to_message(keyframe, 3));  // the same id and time again: refused
     bus_.drain();
     ASSERT_EQ(trajectories->size(), 3u);
     const KeyframeTrajectory last = from_message(trajectories->back());
     ASSERT_EQ(last.keyframes.size(), 3u);
     EXPECT_NEAR(last.keyframes[2].world_from_camera.translation().x(), 0.2, 1e-9);
-    EXPECT_EQ(shell.status().decode_error_count(), 3 * kCorrupt + 1);
+    EXPECT_EQ(shell.status().decode_error_count(), 3 * kCorrupt);
+    EXPECT_EQ(shell.status().losses().at("keyframes from before those that came"), 1);
+}
+
+TEST_F(GraphShellTest, TheLastTrajectoryIsRepeatedForThoseWhoComeLate) {
+    GraphShell shell(bus_, {});
+    Keyframe keyframe;
+    keyframe.id = 0;
+    bus_.publish(channels::kKeyframe, to_message(keyframe, 0));
+    bus_.drain();
+    const auto late = collect<trajectory_t>(channels::kTrajectory);
+    shell.poll();
+    bus_.drain();
+    EXPECT_TRUE(late->empty());
+    std::this_thread::sleep_for(std::chrono::milliseconds(1100));
+    for (int i = 0; i < 3; ++i) shell.poll();
+    bus_.drain();
+    ASSERT_EQ(late->size(), 1u);
+    EXPECT_EQ(late->back().seq, 0) << "the same message, not a new one";
+    EXPECT_EQ(late->back().n_keyframes, 1);
+}
+
+TEST_F(GraphShellTest, AnotherOdometrysKeyframesAreCountedAndNotUsed) {
+    GraphShell shell(bus_, {});
+    Keyframe keyframe;
+    keyframe.covariance = Matrix6d::Identity() * 1e-4;
+    const auto publish = [&](int id, std::int32_t seq, double x) {
+        keyframe.id = id;
+        keyframe.utime = keyframe.pose_utime = 1000000 * id;
+        keyframe.odom_from_camera.translation().x() = x;
+        bus_.publish(channels::kKeyframe, to_message(keyframe, seq));
+        bus_.drain();
+    };
+    for (int i = 0; i < 10; ++i) publish(i, 100 + i, 0.1 * i);
+    for (int i = 10; i < 20; ++i) {
+        publish(i, 100 + i, 0.1 * i);
+        publish(i - 10, i - 10, 7);  // an old log's
+    }
+    EXPECT_EQ(shell.graph().trajectory().keyframes.size(), 20u);
+    EXPECT_EQ(shell.status().decode_error_count(), 0);
+    EXPECT_EQ(shell.status().losses().at("keyframes of another sender") +
+                  shell.status().losses().at("keyframes from before those that came"),
+              10);
 }
 
 TEST_F(GraphShellTest, TheBackgroundComesToTheSameTrajectory) {

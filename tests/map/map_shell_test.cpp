@@ -126,6 +126,33 @@ TEST_F(MapShellTest, AFullDiskOrALostFolderEndsNothingAndTheMapIsWrittenWhenItCa
     EXPECT_EQ(maps->size(), 1u);
 }
 
+TEST_F(MapShellTest, TheLastMapIsRepeatedAndARepeatedTrajectoryIsNoWork) {
+    MapShell shell(bus_, {});
+    bus_.publish(channels::kKeyframe, to_message(test::sample_keyframe(), 0));
+    bus_.publish(channels::kTrajectory, to_message(trajectory(), 0));
+    bus_.drain();
+    const auto late = collect<plane_map_t>(channels::kMap);
+    for (int i = 0; i < 3; ++i) bus_.publish(channels::kTrajectory, to_message(trajectory(), 0));
+    bus_.drain();
+    EXPECT_TRUE(late->empty());
+    EXPECT_EQ(shell.status().work_ms().count(), 1);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1100));
+    for (int i = 0; i < 3; ++i) shell.poll();
+    bus_.drain();
+    ASSERT_EQ(late->size(), 1u);
+    EXPECT_EQ(late->back().seq, 0) << "the same message, not a new one";
+    EXPECT_EQ(late->back().n_planes, 2);
+}
+
+TEST_F(MapShellTest, RegionsThatItCannotUseAreCounted) {
+    MapShell shell(bus_, {});
+    Keyframe keyframe = test::sample_keyframe();
+    keyframe.regions[1].box.half_extents.x() = 60;
+    bus_.publish(channels::kKeyframe, to_message(keyframe, 0));
+    bus_.drain();
+    EXPECT_EQ(shell.status().losses().at("regions that are not usable or out of range"), 1);
+}
+
 TEST_F(MapShellTest, AnOutputThatCannotBeWrittenIsAnErrorAtOnce) {
     write_file(folder_.string() + ".file", "x");
     MapShellOptions options;

@@ -51,14 +51,142 @@ TEST(FrameDecoder, AllEncodingsGiveTheSameFrame) {
     }
 }
 
-TEST(FrameDecoder, SharesAFrameAmongThoseWhoAsk) {
+/// A decoder with a subscriber, and what reached that.
+class Subscribed : public testing::Test {
+  protected:
+    Subscribed() {
+        decoder_.subscribe(status_, 8, [this](auto frame) { frames_.push_back(std::move(frame)); });
+        publish(camera_);
+    }
+    static CameraInfo sample(double fx) {
+        CameraInfo camera = sample_camera();
+        camera.depth.fx = camera.color.fx = fx;
+        return camera;
+    }
+    void publish(const CameraInfo& camera) {
+        bus_.publish(channels::kCameraInfo, to_message(camera, 0, 0));
+        bus_.drain();
+    }
+    struct Sent {
+        std::int64_t utime;
+        std::uint32_t seq;
+        std::optional<std::uint64_t> sender = std::nullopt;
+        int width = 64;
+        int level = 900;
+    };
+    void publish(const Sent& sent) {
+        auto message = frame_message(DepthImage(sent.width, 48, static_cast<std::uint16_t>(sent.level)),
+                                     RgbImage(sent.width, 48), ColorEncoding::kRaw, DepthEncoding::kRaw);
+        message.utime = sent.utime;
+        message.images[1].metadata.clear();
+        set_seq(message.images[1], sent.seq);
+        if (sent.sender) set_sender(message.images[1], *sent.sender);
+        bus_.publish(channels::kFrame, message);
+        bus_.drain();
+    }
+    std::int64_t lost(const std::string& what) const {
+        const auto found = status_.losses().find(what);
+        return found == status_.losses().end() ? 0 : found->second;
+    }
+
+    Bus bus_{"memq://"};
+    CameraInfo camera_ = sample(50), other_camera_ = sample(60);
+    ModuleStatus status_{"odometry"};
+    FrameDecoder decoder_{bus_};
+    std::vector<std::shared_ptr<const Frame>> frames_;
+};
+
+TEST_F(Subscribed, ShareAFrameAndTheTroubleOfOneIsNotTheNexts) {
+    ModuleStatus second("octomap"), third("segmentation");
+    std::shared_ptr<const Frame> shared, last;
+    decoder_.subscribe(
+        second, 8,
+        [&](auto frame) {
+            shared = frame;
+            throw MessageError("no");
+        },
+        false);
+    decoder_.subscribe(third, 8, [&](auto frame) { last = frame; });
+    publish({1000, 0});
+    ASSERT_EQ(frames_.size(), 1u);
+    EXPECT_EQ(shared.get(), frames_[0].get());
+    EXPECT_EQ(last.get(), frames_[0].get());
+    EXPECT_EQ(&shared->depth(), &last->depth());
+    EXPECT_EQ(status_.received_count(), 1);
+    EXPECT_EQ(status_.decode_error_count(), 0);
+    EXPECT_EQ(second.received_count(), 0) << "frames are not its main stream";
+    EXPECT_EQ(second.decode_error_count(), 1);
+    EXPECT_EQ(bus_.handler_errors(), 1);
+}
+
+TEST_F(Subscribed, LateAndRepeatedFramesAndStampsThatGoBackAreCountedApart) {
+    for (const std::uint32_t i : {0u, 1u, 3u, 2u, 4u, 4u, 5u})
+        publish({1000000 + 33333 * std::int64_t{i}, i});
+    EXPECT_EQ(frames_.size(), 5u);
+    EXPECT_EQ(lost("frames that came late or twice"), 2);
+    EXPECT_EQ(lost("frames whose stamp went back"), 0);
+    for (std::uint32_t i = 6; i < 20; ++i) publish({1000000 - 33333 * std::int64_t{i}, i});
+    EXPECT_EQ(frames_.size(), 5u);
+    EXPECT_EQ(lost("frames whose stamp went back"), 14);
+    EXPECT_EQ(status_.dropped_count(), 16);
+    EXPECT_EQ(status_.received_count(), 21);
+}
+
+TEST_F(Subscribed, TheSecondOfTwoSendersIsIgnoredWhileTheFirstLives) {
+    for (int i = 0; i < 100; ++i) {
+        const auto seq = static_cast<std::uint32_t>(i);
+        publish({1000000 + 33333 * i, seq, 1});
+        publish({1007000 + 33333 * i, seq, 2, i % 2 == 0 ? 64 : 32});
+    }
+    ASSERT_EQ(frames_.size(), 100u);
+    for (const auto& frame : frames_) EXPECT_EQ((frame->utime() - 1000000) % 33333, 0);
+    EXPECT_EQ(lost("frames of another sender"), 100);
+    EXPECT_EQ(status_.decode_error_count(), 0) << "of whatever size its images are";
+}
+
+TEST_F(Subscribed, AnotherCameraIsNotTakenWhileTheFirstIsDescribed) {
+    for (int i = 0; i < 150; ++i) {
+        if (i % 30 == 0) publish(camera_);
+        if (i % 30 == 15) publish(other_camera_);
+        publish({1000000 + 33333 * i, static_cast<std::uint32_t>(i), 1});
+    }
+    for (const auto& frame : frames_) EXPECT_EQ(frame->camera().depth.fx, 50);
+    EXPECT_EQ(frames_.size(), 150u);
+    // The first is described no more: after two seconds the other one is.
+    publish(other_camera_);
+    for (int i = 150; i < 250; ++i) publish({1000000 + 33333 * i, static_cast<std::uint32_t>(i), 1});
+    EXPECT_EQ(frames_[160]->camera().depth.fx, 50);
+    EXPECT_EQ(frames_.back()->camera().depth.fx, 60);
+}
+
+TEST_F(Subscribed, AnotherCameraIsTakenWithItsFrames) {
+    for (int i = 0; i < 30; ++i) publish({1000000 + 33333 * i, static_cast<std::uint32_t>(i)});
+    // A second log behind the first: time starts again.
+    publish(other_camera_);
+    for (int i = 0; i < 30; ++i)
+        publish({500000 + 33333 * i, static_cast<std::uint32_t>(i), std::nullopt, 64, 800});
+    ASSERT_GE(frames_.size(), 55u);
+    for (const auto& frame : frames_)
+        EXPECT_EQ(frame->camera().depth.fx, frame->depth()(0, 0) == 900 ? 50 : 60);
+    // Images of another size, in the stream as it is.
+    CameraInfo small = sample(25);
+    small.depth.width = small.color.width = 32;
+    publish(small);
+    publish({1500000, 30, std::nullopt, 32});
+    EXPECT_EQ(frames_.back()->camera().depth.width, 32);
+}
+
+TEST_F(Subscribed, FramesBeforeTheCameraAreCounted) {
     Bus bus("memq://");
-    FrameDecoder decoder(bus, sample_camera());
-    const auto bytes = encoded(frame_message(DepthImage(64, 48, 900), RgbImage(64, 48), ColorEncoding::kRaw,
-                                             DepthEncoding::kZipped));
-    const auto a = decoder.decode(raw(bytes)), b = decoder.decode(raw(bytes));
-    EXPECT_EQ(a.get(), b.get());
-    EXPECT_EQ(&a->depth(), &b->depth());
+    FrameDecoder decoder(bus);
+    ModuleStatus status("odometry");
+    decoder.subscribe(status, 8, [](const auto&) { FAIL(); });
+    bus.publish(channels::kFrame, frame_message(DepthImage(64, 48, 900), RgbImage(64, 48),
+                                                ColorEncoding::kRaw, DepthEncoding::kRaw));
+    bus.drain();
+    EXPECT_EQ(status.received_count(), 1);
+    EXPECT_EQ(status.dropped_count(), 1);
+    EXPECT_EQ(status.losses().size(), 1u);
 }
 
 TEST(FrameDecoder, WaitsForTheCameraAndTakesItFromTheBus) {

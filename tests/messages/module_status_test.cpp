@@ -65,12 +65,62 @@ TEST_F(Status, StatesFollowTheWork) {
     at(1);
     EXPECT_EQ(at(2).state, module_status_t::WAITING);
     status_.received();
-    EXPECT_EQ(at(3).state, module_status_t::FAILING);
+    EXPECT_EQ(at(3).state, module_status_t::RUNNING) << "its work may take a while";
     status_.received();
     status_.published();
     EXPECT_EQ(at(4).state, module_status_t::RUNNING);
     EXPECT_EQ(at(5).state, module_status_t::IDLE);
-    EXPECT_EQ(at(5, true).state, module_status_t::STOPPED);
+    for (int second = 6; second < 12; ++second) {
+        status_.received();
+        const auto state = at(second).state;
+        EXPECT_EQ(state, second < 8 ? module_status_t::RUNNING : module_status_t::FAILING)
+            << "for three seconds input comes and nothing leaves: " << second;
+    }
+    status_.received();
+    status_.published();
+    EXPECT_EQ(at(13).state, module_status_t::RUNNING);
+    EXPECT_EQ(at(14, true).state, module_status_t::STOPPED);
+    EXPECT_EQ(status_.line().rfind("stopped", 0), 0u) << status_.line();
+}
+
+TEST_F(Status, AModuleThatCanUseNothingFailsAndDoesNotWait) {
+    at(1);
+    for (int i = 0; i < 14; ++i) {
+        status_.received();
+        status_.dropped();
+    }
+    EXPECT_EQ(status_.line().rfind("failing", 0), 0u)
+        << "before the first second is over: " << status_.line();
+    EXPECT_EQ(at(2).state, module_status_t::FAILING);
+    ModuleStatus corrupt("graph");
+    corrupt.publish_if_due(bus_, 1000000);
+    const auto handler = corrupt.guard([](const RawMessage&) { throw MessageError("bad"); });
+    EXPECT_THROW(handler({}), MessageError);
+    corrupt.publish_if_due(bus_, 2000000);
+    bus_.drain();
+    EXPECT_EQ(last_.state, module_status_t::FAILING);
+    // A side stream alone is something that came.
+    ModuleStatus side("graph");
+    side.publish_if_due(bus_, 1000000);
+    side.guard([](const RawMessage&) {})({});
+    side.publish_if_due(bus_, 2000000);
+    bus_.drain();
+    EXPECT_EQ(last_.state, module_status_t::IDLE);
+}
+
+TEST_F(Status, TheFirstLineDoesNotSayWaitingWhenInputCame) {
+    at(1);
+    at(2);
+    for (int i = 0; i < 14; ++i) status_.received();
+    EXPECT_EQ(status_.line().rfind("running", 0), 0u) << status_.line();
+}
+
+TEST_F(Status, ARestartOfTheSenderIsSaidAndIsNoGap) {
+    for (const std::uint32_t seq : {500u, 501u, 0u, 1u, 2u}) status_.received(seq);
+    at(1);
+    const module_status_t& m = at(2);
+    EXPECT_EQ(m.gaps, 0);
+    EXPECT_NE(m.text.find("started again"), std::string::npos) << m.text;
 }
 
 TEST_F(Status, TellsWhatWasLost) {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "odometry/odometry_shell.hpp"
 
+#include <chrono>
+#include <thread>
+
 #include "shell_fixture.hpp"
 
 namespace planemap {
@@ -40,13 +43,60 @@ TEST_F(OdometryShellTest, AFrameWaitsForItsRegionsButNotForEver) {
     OdometryShell shell(bus_, std::make_shared<FrameDecoder>(bus_), {});
     const auto estimates = collect<odometry_t>(channels::kOdometry);
     publish_camera();
-    for (int i = 0; i < 6; ++i) bus_.publish(channels::kFrame, frame(1000000 + 33333 * i));
+    for (int i = 0; i < 11; ++i) bus_.publish(channels::kFrame, frame(1000000 + 33333 * i));
     bus_.drain();
-    EXPECT_EQ(estimates->size(), 3u);
+    EXPECT_EQ(estimates->size(), 3u) << "eight wait, the first frame too";
     shell.finish();
     bus_.drain();
-    EXPECT_EQ(estimates->size(), 6u);
-    for (std::size_t i = 1; i < 6; ++i) EXPECT_GT((*estimates)[i].utime, (*estimates)[i - 1].utime);
+    EXPECT_EQ(estimates->size(), 11u);
+    for (std::size_t i = 1; i < 11; ++i) EXPECT_GT((*estimates)[i].utime, (*estimates)[i - 1].utime);
+    EXPECT_EQ(shell.status().losses().at("frames handled without their regions"), 11);
+}
+
+TEST_F(OdometryShellTest, ALonelyFrameWaitsForATimeOnly) {
+    OdometryShell shell(bus_, std::make_shared<FrameDecoder>(bus_), {});
+    const auto estimates = collect<odometry_t>(channels::kOdometry);
+    publish_camera();
+    bus_.publish(channels::kFrame, frame(1000000));
+    bus_.drain();
+    const std::int64_t start = now_us();
+    while (estimates->empty() && now_us() - start < 5000000) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(shell.poll()));
+        bus_.drain();
+    }
+    EXPECT_EQ(estimates->size(), 1u);
+    EXPECT_GT(now_us() - start, 400000);
+}
+
+TEST_F(OdometryShellTest, RegionsOfALaterFrameEndTheWaitOfThoseBefore) {
+    OdometryShell shell(bus_, std::make_shared<FrameDecoder>(bus_), {});
+    const auto estimates = collect<odometry_t>(channels::kOdometry);
+    publish_camera();
+    for (int i = 0; i < 4; ++i) bus_.publish(channels::kFrame, frame(1000000 + 33333 * i));
+    publish_regions(1000000 + 33333 * 2);  // the segmentation has dropped the first two
+    bus_.drain();
+    EXPECT_EQ(estimates->size(), 3u);
+}
+
+TEST_F(OdometryShellTest, TheFirstKeyframeHasItsRegions) {
+    OdometryShell shell(bus_, std::make_shared<FrameDecoder>(bus_), {});
+    const auto keyframes = collect<keyframe_t>(channels::kKeyframe);
+    publish_camera();
+    bus_.publish(channels::kFrame, frame(1000000));
+    bus_.drain();
+    EXPECT_TRUE(keyframes->empty());
+    PlanarRegion wall;
+    for (int i = 0; i < 400; ++i) wall.moments.add({0.05 * (i % 20) - 0.5, 0.05 * (i / 20) - 0.5, 2});
+    const PlaneFit fit = fit_plane(wall.moments);
+    wall.plane = fit.plane;
+    wall.box.frame_from_box.linear() = principal_axes(fit.plane, wall.moments);
+    wall.box.frame_from_box.translation() = wall.moments.mean();
+    wall.box.half_extents = {0.5, 0.5, 0};
+    wall.outline.rings = {{{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}}};
+    bus_.publish(channels::kRegions, to_message(FrameRegions{1000000, {wall}}, 0));
+    bus_.drain();
+    ASSERT_EQ(keyframes->size(), 1u);
+    EXPECT_EQ(keyframes->front().n_regions, 1);
 }
 
 TEST_F(OdometryShellTest, AFrameWithBrokenDepthCostsItselfOnly) {

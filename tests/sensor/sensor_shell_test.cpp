@@ -6,10 +6,13 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <sstream>
 #include <thread>
 
+#include "messages/log.hpp"
 #include "messages/tcpq_server.hpp"
+#include "sensor/temporary_folder.hpp"
 #include "shell_fixture.hpp"
 
 namespace planemap {
@@ -125,6 +128,40 @@ TEST_F(SensorShellTest, PublishesEveryFrameInEveryEncoding) {
             EXPECT_EQ(shell.colorless(), 1);
         }
     }
+}
+
+TEST_F(SensorShellTest, OnASharedBusFramesTellTheirSender) {
+    const TemporaryFolder folder;
+    const auto first_frame = [&](const std::string& url) {
+        const std::filesystem::path file = folder.path() / "sensor.lcmlog";
+        {
+            Bus bus(url);
+            bot_core::images_t first;
+            if (bus.in_process())
+                bus.subscribe(channels::kFrame,
+                              [&](const RawMessage& m) { first = decode<bot_core::images_t>(m.bytes); });
+            SensorShell shell(bus, std::make_unique<FakeSource>(camera()), fast("raw", "raw"));
+            shell.poll();
+            if (bus.in_process()) {
+                bus.drain();
+                return first;
+            }
+        }
+        LogReader log(file);
+        LogEvent event;
+        while (log.next(event) && event.channel != channels::kFrame) {
+        }
+        return decode<bot_core::images_t>(event.bytes);
+    };
+    const std::string shared = "file://" + (folder.path() / "sensor.lcmlog").string() + "?mode=w";
+    const auto one = first_frame(shared).images.back().metadata,
+               other = first_frame(shared).images.back().metadata;
+    ASSERT_EQ(one.size(), 2u);
+    EXPECT_EQ(one[1].key, "sender");
+    EXPECT_EQ(one[1].value.size(), 8u);
+    EXPECT_NE(one[1].value, other.at(1).value);
+    EXPECT_EQ(first_frame("memq://").images.back().metadata.size(), 1u)
+        << "the same bytes again in one process";
 }
 
 TEST_F(SensorShellTest, KeepsTheRecordedPace) {

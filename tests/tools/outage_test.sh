@@ -12,7 +12,8 @@ bin="$1"
 root="$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)"
 modules=(segmentation odometry graph map octomap)
 
-source "$root/tests/tools/own_network.sh"
+source "$(dirname "${BASH_SOURCE[0]}")/own_network.sh"
+enter_own_network "$0" "$@"
 if ! "$OWN_NETWORK"; then
     echo "SKIP: no network namespace may be made here"
     exit 77

@@ -1,10 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # shellcheck shell=bash
-# To be sourced, with the script's arguments: goes on in a network namespace with nothing but loopback, as root or as a
-# user who may make one. OWN_NETWORK is then true; else the script goes on where it is, and it is false. Exits with 77,
-# ctest's code for a skipped test, where multicast cannot be had.
-# shellcheck disable=SC2034  # for the script that sources this
-OWN_NETWORK=true
+# For scripts that put modules as separate processes on udpm; to be sourced.
 
 # Loopback and its route for multicast; taking the interface down removes the route.
 raise_loopback() {
@@ -12,18 +8,50 @@ raise_loopback() {
     ip route replace 224.0.0.0/4 dev lo
 }
 
-if [[ -z "${PLANEMAP_OWN_NETWORK:-}" ]]; then
+# enter_own_network SCRIPT ARGS...: runs the script again in a network namespace with nothing but loopback, as root or as
+# a user who may make one; OWN_NETWORK is then true. Else it goes on where it is, and OWN_NETWORK is false. Exits with 77,
+# ctest's code for a skipped test, where multicast cannot be had.
+# shellcheck disable=SC2034  # for the script that sources this
+enter_own_network() {
+    local unshare
+    OWN_NETWORK=true
+    if [[ -n "${PLANEMAP_OWN_NETWORK:-}" ]]; then
+        raise_loopback
+        return
+    fi
     for unshare in "unshare --net" "unshare --net --map-root-user"; do
         if $unshare ip link set lo up 2>/dev/null; then
-            PLANEMAP_OWN_NETWORK=1 exec $unshare "$0" "$@"
+            PLANEMAP_OWN_NETWORK=1 exec $unshare "$@"
         fi
     done
-    # shellcheck disable=SC2034
     OWN_NETWORK=false
     if ! ip route get 239.255.76.67 >/dev/null 2>&1; then
         echo "SKIP: no network namespace may be made here, and this network has no route for multicast"
         exit 77
     fi
-else
-    raise_loopback
-fi
+}
+
+# events LOG CHANNEL: how many events of a channel an LCM log holds.
+events() {
+    perl -e '
+        open(my $log, "<:raw", $ARGV[0]) or die "$ARGV[0]: $!\n";
+        my $count = 0;
+        while (read($log, my $head, 28) == 28) {
+            my ($sync, $number, $utime, $channel_size, $data_size) = unpack("N q> q> N N", $head);
+            die "$ARGV[0]: a record does not start with the sync word\n" if $sync != 0xEDA1DA01;
+            read($log, my $channel, $channel_size);
+            seek($log, $data_size, 1);
+            $count++ if $channel eq $ARGV[1];
+        }
+        print $count;' "$1" "$2"
+}
+
+# wait_for_modules LOG: until a running tools/launch --no-sensor --log LOG has recorded that the segmentation is there:
+# every module says so on the bus once a second.
+wait_for_modules() {
+    local attempt
+    for ((attempt = 0; attempt < 150; attempt++)); do
+        [[ -f "$1" && "$(events "$1" PLANEMAP_STATUS_SEGMENTATION)" -gt 0 ]] && return
+        sleep 0.1
+    done
+}

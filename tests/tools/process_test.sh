@@ -16,7 +16,8 @@ fail() {
     exit 1
 }
 
-source "$root/tests/tools/own_network.sh"
+source "$(dirname "${BASH_SOURCE[0]}")/own_network.sh"
+enter_own_network "$0" "$@"
 
 work="$(mktemp -d)"
 launch_pid=
@@ -27,21 +28,6 @@ cleanup() {
 trap cleanup EXIT
 
 launch() { exec setpriv --pdeathsig TERM "$root/tools/launch" --bin "$bin" --lcm-url "$url" "$@"; }
-
-# events LOG CHANNEL: how many events of a channel an LCM log holds.
-events() {
-    perl -e '
-        open(my $log, "<:raw", $ARGV[0]) or die "$ARGV[0]: $!\n";
-        my $count = 0;
-        while (read($log, my $head, 28) == 28) {
-            my ($sync, $number, $utime, $channel_size, $data_size) = unpack("N q> q> N N", $head);
-            die "$ARGV[0]: a record does not start with the sync word\n" if $sync != 0xEDA1DA01;
-            read($log, my $channel, $channel_size);
-            seek($log, $data_size, 1);
-            $count++ if $channel eq $ARGV[1];
-        }
-        print $count;' "$1" "$2"
-}
 
 # expect_map LOG FOLDER: map messages on the bus, and the map in the output folder.
 expect_map() {
@@ -59,11 +45,7 @@ expect_map "$work/live.lcmlog" "$work/live"
 echo "== replay"
 launch --no-sensor --log "$work/replay.lcmlog" --output "$work/replay" &
 launch_pid=$!
-# Every module says on the bus once a second that it is there.
-for ((attempt = 0; attempt < 150; attempt++)); do
-    [[ -f "$work/replay.lcmlog" && "$(events "$work/replay.lcmlog" PLANEMAP_STATUS_SEGMENTATION)" -gt 0 ]] && break
-    sleep 0.1
-done
+wait_for_modules "$work/replay.lcmlog"
 lcm-logplayer --lcm-url="$url" -e 'OPENNI_FRAME|PLANEMAP_CAMERA_INFO' "$work/live.lcmlog"
 sleep 1
 kill -TERM "$launch_pid"

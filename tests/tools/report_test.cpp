@@ -115,6 +115,20 @@ TEST(Report, AnEmptyMapHasNoRatio) {
     EXPECT_EQ(report_markdown(report).find("inf"), std::string::npos);
 }
 
+TEST(Report, WhatWasNotUsedIsSaidOnceAReason) {
+    Json report = sample();
+    EXPECT_EQ(report_markdown(report).find("Not used"), std::string::npos) << "from before losses were told";
+    report["losses"] = Json::object();
+    EXPECT_EQ(report_markdown(report).find("Not used"), std::string::npos);
+    report["losses"] = {
+        {"segmentation", {{"frames whose stamp went back", 39}}},
+        {"odometry", {{"frames whose stamp went back", 39}, {"messages that were corrupt", 2}}}};
+    const std::string text = report_markdown(report);
+    EXPECT_NE(text.find("- 39 frames whose stamp went back (segmentation, odometry)\n"), std::string::npos)
+        << text;
+    EXPECT_NE(text.find("- 2 messages that were corrupt (odometry)\n"), std::string::npos) << text;
+}
+
 TEST(Report, SomethingElseIsAnError) {
     EXPECT_THROW(report_markdown(Json::parse("{}")), std::runtime_error);
     EXPECT_THROW(report_markdown(Json::parse("[1]")), std::runtime_error);

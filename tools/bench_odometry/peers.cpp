@@ -102,7 +102,6 @@ MethodRun run_peer(const std::string& method, const std::string& input_name, std
         bus.drain();
         on_frame(input->frames());
     }
-    decoder.clear();
     run.frames = input->frames();
     run.tracking = stage_time(odometry.ms());
     run.decoding = stage_time(decoder.decode_ms());

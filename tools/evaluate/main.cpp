@@ -176,10 +176,10 @@ void run(const Arguments& arguments) {
     json["truth_format"] = format_name(pair.truth.format);
     json["estimate_format"] = format_name(pair.estimate.format);
     json["matched_by"] = pair.by_index ? "index" : "time";
-    const bool print = arguments.json_file != "-";
-    if (print && pair.by_index)
+    const bool as_text = arguments.json_file != "-";
+    if (as_text && pair.by_index)
         std::printf("KITTI's form has no timestamps: pose i is compared with pose i\n");
-    if (print) print_table(evaluation);
+    if (as_text) print_table(evaluation);
     if (arguments.delta) {
         const Delta delta{*arguments.delta, delta_units.at(arguments.delta_unit)};
         const Trajectory truth_once = without_repeated_stamps(truth),
@@ -188,7 +188,7 @@ void run(const Arguments& arguments) {
         const std::string why = error ? "" : why_no_relative_error(truth_once, estimate_once, delta);
         char name[40];
         std::snprintf(name, sizeof(name), "RPE per %g %s", delta.value, arguments.delta_unit.c_str());
-        if (print) print_rows(name, error, why);
+        if (as_text) print_rows(name, error, why);
         json["rpe_delta"] = to_json(error);
         if (!error) json["rpe_delta_why"] = why;
         json["delta"] = delta.value;

@@ -11,6 +11,7 @@
 #include "map/map_file.hpp"
 #include "run/accuracy.hpp"
 #include "run/input.hpp"
+#include "run/losses.hpp"
 #include "run/pipeline.hpp"
 #include "run/report.hpp"
 #include "run/size_report.hpp"
@@ -94,6 +95,7 @@ Json report_of(const std::string& input_name, const Input& input, Pipeline& pipe
     report["keyframes"] = keyframes.keyframes.size();
     report["loop_closures"] = keyframes.loop_closures;
     report["planes"] = map.planes.size();
+    report["losses"] = losses_of(pipeline);
     report["wall_s"] = clock.wall_s();
     report["cpu_s"] = clock.cpu_s();
     report["peak_rss_mb"] = peak_rss_mb();

@@ -35,7 +35,6 @@ void Pipeline::finish() {
     if (map_) map_->finish();
     settle();
     if (octomap_) octomap_->finish();
-    decoder_->clear();
 }
 
 const KeyframeTrajectory& Pipeline::keyframes() const {

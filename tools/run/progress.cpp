@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "messages/process.hpp"
 #include "run/input.hpp"
 #include "run/pipeline.hpp"
 
@@ -37,7 +38,9 @@ Progress::Progress(bool quiet)
     : quiet_(quiet),
       terminal_(::isatty(STDERR_FILENO) == 1),
       start_(std::chrono::steady_clock::now()),
-      last_(start_) {}
+      last_(start_) {
+    if (terminal_ && !quiet_) log_over_a_drawn_line(true);
+}
 
 void Progress::show(const Input& input, Pipeline& pipeline) {
     if (quiet_) return;
@@ -63,6 +66,7 @@ void Progress::show(const Input& input, Pipeline& pipeline) {
 void Progress::end() {
     if (drawn_) std::fputs("\n", stderr);
     drawn_ = false;
+    log_over_a_drawn_line(false);
 }
 
 }  // namespace planemap

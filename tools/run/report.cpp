@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "run/losses.hpp"
 #include "run/report_text.hpp"
 #include "run/size_report.hpp"
 
@@ -70,6 +71,7 @@ std::string report_markdown(const Json& report) {
     try {
         std::string out = "# planemap: " + report.at("input").get<std::string>() + "\n\n";
         add_tracking(report, out);
+        out += losses_markdown(report);
         out += sizes_markdown(report);
         add_times(report, out);
         return out;

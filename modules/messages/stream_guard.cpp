@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "messages/stream_guard.hpp"
+
+#include <spdlog/spdlog.h>
+
+namespace planemap {
+
+bool StreamGuard::admits(std::int32_t seq, std::optional<std::int64_t> utime,
+                         std::span<const std::uint8_t> bytes) {
+    using Verdict = SenderGuard::Verdict;
+    SenderGuard::Message message;
+    message.seq = static_cast<std::uint32_t>(seq);
+    message.utime = utime;
+    message.checksum = checksum_of(bytes);
+    const Verdict verdict = guard_.judge(message);
+    if (!guard_.news().empty()) spdlog::warn("{}", guard_.news());
+    if (verdict == Verdict::kRepeated) {
+        if (main_stream_) status_.lost(things_ + " that came twice");
+        return false;
+    }
+    if (main_stream_ && verdict != Verdict::kForeign) status_.received(message.seq);
+    if (verdict != Verdict::kForeign && verdict != Verdict::kWentBack) return true;
+    status_.lost(things_ +
+                 (verdict == Verdict::kForeign ? " of another sender" : " from before those that came"));
+    if (main_stream_) status_.dropped();
+    return false;
+}
+
+}  // namespace planemap

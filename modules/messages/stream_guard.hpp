@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "messages/module_status.hpp"
+#include "messages/sender_guard.hpp"
+
+namespace planemap {
+
+/// A channel of results that a module lives on: one sender's are admitted, what another sender or an earlier
+/// run says is counted and named (see SenderGuard).
+class StreamGuard {
+  public:
+    /// What is not admitted counts in `status` as lost `things`, plural; if they are the module's main
+    /// stream, those of the sender count as received.
+    StreamGuard(const std::string& channel, std::string things, ModuleStatus& status, bool main_stream = true)
+        : guard_(channel), things_(std::move(things)), status_(status), main_stream_(main_stream) {}
+
+    /// Whether to use a message. One that repeats the last, byte for byte, is for those who came late: it is
+    /// not used and no loss. One that comes late is admitted: the module knows what it can do with it.
+    bool admits(std::int32_t seq, std::optional<std::int64_t> utime, std::span<const std::uint8_t> bytes);
+
+  private:
+    SenderGuard guard_;
+    std::string things_;
+    ModuleStatus& status_;
+    bool main_stream_;
+};
+
+}  // namespace planemap

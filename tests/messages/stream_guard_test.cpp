@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "messages/stream_guard.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace planemap {
+namespace {
+
+class Admission : public testing::Test {
+  protected:
+    bool admits(std::int32_t seq, std::uint8_t sender = 0) {
+        const std::vector<std::uint8_t> bytes{static_cast<std::uint8_t>(seq), sender};
+        return guard_.admits(seq, 1000000 + 500000 * std::int64_t{seq} + sender, bytes);
+    }
+    ModuleStatus status_{"graph"};
+    StreamGuard guard_{"PLANEMAP_KEYFRAME", "keyframes", status_};
+};
+
+TEST_F(Admission, ARepeatedMessageIsNeitherUsedNorLost) {
+    EXPECT_TRUE(admits(0));
+    EXPECT_TRUE(admits(1));
+    EXPECT_FALSE(admits(1));
+    EXPECT_FALSE(admits(1));
+    EXPECT_TRUE(admits(2));
+    EXPECT_EQ(status_.received_count(), 3);
+    EXPECT_EQ(status_.dropped_count(), 0);
+    EXPECT_TRUE(status_.losses().empty());
+}
+
+TEST_F(Admission, WhatAnotherSenderSaysIsCountedAndNamed) {
+    for (int i = 50; i < 60; ++i) EXPECT_TRUE(admits(i));
+    for (int i = 0; i < 10; ++i) {
+        EXPECT_FALSE(admits(i, 1)) << "an old log's results among the new";
+        EXPECT_TRUE(admits(60 + i));
+    }
+    EXPECT_EQ(status_.losses().at("keyframes of another sender"), 9);
+    EXPECT_EQ(status_.losses().at("keyframes from before those that came"), 1);
+    EXPECT_EQ(status_.dropped_count(), 10);
+}
+
+TEST_F(Admission, ALateOneIsAdmitted) {
+    for (const int i : {0, 1, 3, 2, 4}) EXPECT_TRUE(admits(i));
+    EXPECT_TRUE(status_.losses().empty());
+}
+
+}  // namespace
+}  // namespace planemap

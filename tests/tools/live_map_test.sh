@@ -1,0 +1,55 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# live_map_test.sh BIN COMPARE_MAPS [LOG]: while nothing is dropped, the modules as separate processes on udpm give
+# planemap-run's map of the same log: for a camera that walks, for one that stands still (its first keyframe is its only
+# one), and, if given, for LOG. In a network of their own; exits with 77, ctest's code for a skipped test, where multicast
+# cannot be had.
+set -euo pipefail
+
+bin="$1"
+compare_maps="$2"
+root="$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)"
+url="udpm://239.255.76.67:$((20000 + $$ % 20000))?ttl=0&recv_buf_size=4194304"
+speed="${PLANEMAP_LIVE_SPEED:-0.5}" # of the recording: nothing may be dropped, on a busy machine neither
+
+fail() {
+    echo "live_map_test: $*" >&2
+    exit 1
+}
+
+source "$(dirname "${BASH_SOURCE[0]}")/own_network.sh"
+enter_own_network "$0" "$@"
+
+work="$(mktemp -d)"
+launch_pid=
+cleanup() {
+    if [[ -n "$launch_pid" ]] && kill -TERM "$launch_pid" 2>/dev/null; then wait "$launch_pid" || true; fi
+    rm -rf "$work"
+}
+trap cleanup EXIT
+
+launch() { exec setpriv --pdeathsig TERM "$root/tools/launch" --bin "$bin" --lcm-url "$url" "$@"; }
+
+# expect_the_same LOG NAME: LOG through planemap-run and through the processes.
+expect_the_same() {
+    echo "== $2"
+    "$bin/planemap-run" "$1" --no-octomap -q --output "$work/$2/offline" >/dev/null || fail "planemap-run ended with $?"
+    launch --no-sensor --log "$work/$2/live.lcmlog" --output "$work/$2/live" 2>"$work/$2.stderr" &
+    launch_pid=$!
+    wait_for_modules "$work/$2/live.lcmlog"
+    lcm-logplayer -s "$speed" --lcm-url="$url" -e 'OPENNI_FRAME|PLANEMAP_CAMERA_INFO' "$1" >/dev/null
+    sleep 1
+    kill -TERM "$launch_pid"
+    wait "$launch_pid" || fail "tools/launch ended with code $?"
+    launch_pid=
+    grep "stopped:" "$work/$2.stderr" || true
+    "$compare_maps" "$work/$2/offline/plane_map.lcmlog" "$work/$2/live/plane_map.lcmlog" ||
+        fail "$2: the live map is not planemap-run's"
+}
+
+"$bin/planemap-simulate" 'sim:office?frames=90' --output "$work/walk.lcmlog" >/dev/null
+"$bin/planemap-simulate" 'sim:office?frames=20&speed=0.01&turn=1' --output "$work/still.lcmlog" >/dev/null
+expect_the_same "$work/still.lcmlog" still
+expect_the_same "$work/walk.lcmlog" walk
+if [[ $# -gt 2 ]]; then expect_the_same "$3" given; fi
+echo "live_map_test: the same maps live as offline"

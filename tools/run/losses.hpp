@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+namespace planemap {
+
+class Pipeline;
+
+/// What each module of a run did not use: module -> reason -> count, messages that were corrupt among them.
+/// Modules that lost nothing are left out.
+nlohmann::ordered_json losses_of(Pipeline& pipeline);
+
+/// The same in lines for report.md, a reason a line with its modules; empty when there are none, or when the
+/// report is from before they were told. Throws nlohmann::json::exception for a report that is none.
+std::string losses_markdown(const nlohmann::ordered_json& report);
+
+}  // namespace planemap
