@@ -29,6 +29,7 @@ class GraphShell : public Shell {
 
   private:
     void on_keyframe(const RawMessage& message);
+    void refuse(int id);
     void start_if_due();
     void publish();
 
@@ -39,6 +40,7 @@ class GraphShell : public Shell {
     std::future<void> done_;
     ModuleStatus status_{"graph"};
     std::int32_t seq_ = 0;
+    std::optional<int> last_refused_;  ///< id of the last keyframe that was left out
 };
 
 /// Flags for the options, each named --<prefix>NAME.

@@ -33,6 +33,7 @@ class MapShell : public Shell {
   private:
     void on_keyframe(const RawMessage& message);
     void on_trajectory(const RawMessage& message);
+    void tell_losses();
     void publish();
     void write();
 
@@ -40,6 +41,7 @@ class MapShell : public Shell {
     std::filesystem::path output_;
     PlaneMapper mapper_;
     ModuleStatus status_{"map"};
+    MapLosses told_;  ///< what the status knows
     std::int32_t seq_ = 0;
     std::int64_t last_write_us_ = 0;
     bool unwritten_ = false;
