@@ -3,18 +3,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <map>
 #include <numbers>
 #include <numeric>
+#include <optional>
 #include <queue>
 #include <string>
-#include <unordered_map>
 
 #include "core/validation.hpp"
 #include "graph/landmarks.hpp"
 #include "graph/optimisation.hpp"
 #include "graph/place_index.hpp"
 #include "graph/surroundings.hpp"
+#include "graph/ties.hpp"
 #include "graph/verification.hpp"
 #include "graph/view.hpp"
 
@@ -22,42 +23,57 @@ namespace planemap {
 
 namespace {
 
-constexpr double kMaxReach = 1e6;  // metres: further away is not a pose but a mistake
+constexpr double kMaxReach = 1e6;   // metres: further away is not a pose but a mistake
+constexpr int kMostMissed = 10000;  // keyframes between two that arrive
 
 std::size_t at(int index) {
     return static_cast<std::size_t>(index);
 }
 
-/// How far odometry may have gone astray between two keyframes.
-struct Drift {
-    double metres = std::numeric_limits<double>::infinity();
-    double radians = std::numeric_limits<double>::infinity();
-
-    double size() const { return metres + radians; }
-    Drift operator+(const Drift& other) const { return {metres + other.metres, radians + other.radians}; }
-};
+using graph::Drift;
+using graph::Tie;
 
 struct Node {
     int id = -1;
     std::int64_t utime = 0;
     Pose odom_from_camera = Pose::Identity();
     graph::View view;
+    int place = -1;  ///< number in the index
 };
 
+/// A tie as seen from one of its nodes.
 struct Link {
     int other = -1;
     Drift drift;
-    bool odometry = false;
+    bool is_step = false;
     int loop = -1;  ///< index of the loop closure; -1: none
+};
+
+/// What became of a keyframe that went.
+struct Successor {
+    int keeper_id = -1;
+    Pose keeper_from_gone = Pose::Identity();
+    Drift drift;
 };
 
 bool is_pose(const Pose& pose) {
     return is_valid(pose) && pose.translation().cwiseAbs().maxCoeff() < kMaxReach;
 }
 
-void check(const Keyframe& keyframe, int last_id) {
+/// A keyframe's id is the next one, or a few later; a later one than that is a mistake, or another
+/// odometry's.
+bool follows(int id, int last_id) {
+    return id > last_id && id - last_id <= kMostMissed;
+}
+
+void check(const Keyframe& keyframe, std::optional<int> last_id) {
     FieldErrors errors("keyframe");
-    errors.require(keyframe.id > last_id, "id", keyframe.id, "greater than " + std::to_string(last_id));
+    if (last_id) {
+        errors.require(
+            follows(keyframe.id, *last_id), "id", keyframe.id,
+            "greater than " + std::to_string(*last_id) + " by at most " + std::to_string(kMostMissed));
+    }
+    errors.require(keyframe.id >= 0, "id", keyframe.id, "at least 0");
     errors.require(keyframe.previous_id >= -1 && keyframe.previous_id < std::max(keyframe.id, 0),
                    "previous_id", keyframe.previous_id, "-1 or an earlier keyframe's id");
     errors.require(is_pose(keyframe.odom_from_camera), "odom_from_camera", "not a rigid transform",
@@ -143,8 +159,8 @@ struct GraphOptimisation::Work {
     std::vector<graph::Sighting> sightings;
     double kernel_width = 0;
     int max_iterations = 0;
-    int loops = 0;        ///< how many there were
-    int parts_moved = 0;  ///< how often a part of the graph had been moved as a whole
+    std::size_t loops = 0;  ///< how many there were
+    int parts_moved = 0;    ///< how often a part of the graph had been moved as a whole
 
     /// A loop closure far from the present poses is first trusted fully, so that it can pull against the
     /// kernel; when the rest contradicts it, the kernel lets go of it.
@@ -172,21 +188,26 @@ class PoseGraph::Impl {
     const KeyframeTrajectory& add(const Keyframe& keyframe) {
         extend(keyframe);
         if (due_) optimise();
-        publish();
+        thin();
+        publish_poses();
         return trajectory_;
     }
 
     const KeyframeTrajectory& insert(const Keyframe& keyframe) {
         extend(keyframe);
-        publish();
+        thin();
+        publish_poses();
         return trajectory_;
     }
+
+    bool expects(int id) const { return nodes_.empty() || follows(id, nodes_.back().id); }
 
     bool due() const { return due_; }
 
     std::unique_ptr<GraphOptimisation::Work> prepare();
     const KeyframeTrajectory& apply(const GraphOptimisation::Work& work) {
         take(work);
+        thin();
         publish_poses();
         return trajectory_;
     }
@@ -200,7 +221,9 @@ class PoseGraph::Impl {
     }
 
     const KeyframeTrajectory& trajectory() const { return trajectory_; }
-    const std::vector<LoopClosure>& loop_closures() const { return loops_; }
+    const std::vector<LoopClosure>& loop_closures() const { return closures_; }
+    const GraphCounts& counts() const { return counts_; }
+    std::size_t memory_bytes() const;
 
   private:
     int newest() const { return static_cast<int>(nodes_.size()) - 1; }
@@ -214,7 +237,9 @@ class PoseGraph::Impl {
     }
 
     void extend(const Keyframe& keyframe) {
-        check(keyframe, nodes_.empty() ? -1 : nodes_.back().id);
+        const bool is_first_a_stray = nodes_.size() == 1 && !expects(keyframe.id);
+        check(keyframe, nodes_.empty() || is_first_a_stray ? std::nullopt : std::optional(nodes_.back().id));
+        if (is_first_a_stray) *this = Impl(options_);
         append(keyframe);
         close_loops();
         disagreement_ = std::max(disagreement_, sight(keyframe));
@@ -228,50 +253,72 @@ class PoseGraph::Impl {
         constexpr std::size_t kNodesAKeyframe = 50;
         if (options_.optimise_every > 0 && nodes_.size() % at(options_.optimise_every) == 0) return true;
         if (worst_new_loop() > kFar * options_.kernel_width) return true;
-        return (loop_edges_.size() > loops_optimised_ || disagreement_ > options_.landmark_trigger) &&
+        const bool any_new = std::any_of(loops_.begin(), loops_.end(), [](auto& t) { return !t.is_known; });
+        return (any_new || disagreement_ > options_.landmark_trigger) &&
                since_optimised_ > nodes_.size() / kNodesAKeyframe;
     }
 
     /// Largest whitened error of the loop closures that no optimisation knows yet.
     double worst_new_loop() const {
         double worst = 0;
-        for (std::size_t i = loops_optimised_; i < loop_edges_.size(); ++i) {
-            const graph::PoseEdge& edge = loop_edges_[i];
-            worst =
-                std::max(worst, graph::edge_error(edge, poses_[at(edge.from)], poses_[at(edge.to)]).norm());
+        for (const Tie& tie : loops_) {
+            if (!tie.is_known) worst = std::max(worst, whitened_error(tie.edge));
         }
         return worst;
+    }
+
+    double whitened_error(const graph::PoseEdge& edge) const {
+        return graph::edge_error(edge, poses_[at(edge.from)], poses_[at(edge.to)]).norm();
     }
 
     /// Adds the node, ties it to the previous one and places it.
     void append(const Keyframe& keyframe) {
         nodes_.push_back({keyframe.id, keyframe.utime, keyframe.odom_from_camera,
-                          graph::make_view(keyframe, options_.max_features)});
+                          graph::make_view(keyframe, options_.max_features), -1});
+        Node& added = nodes_.back();
+        counts_.features_left_out += keyframe.features.size() - added.view.points.size();
+        added.place = index_.add(added.view.descriptors);
         links_.emplace_back();
         const int node = newest();
-        index_of_[keyframe.id] = node;
         hangs_on_.push_back(node - 1);
-        const auto previous = index_of_.find(keyframe.previous_id);
-        if (previous != index_of_.end() && previous->second != node) {
-            add_odometry(previous->second, node, keyframe);
+        const int previous = node_of(keyframe.previous_id);
+        const auto successor = gone_.find(keyframe.previous_id);
+        if (previous >= 0) {
+            add_odometry(previous, node, keyframe, keyframe.previous_from_camera, {0, 0});
+        } else if (successor != gone_.end()) {
+            const Successor& s = successor->second;
+            add_odometry(node_of(s.keeper_id), node, keyframe,
+                         s.keeper_from_gone * keyframe.previous_from_camera, s.drift);
         } else if (node == 0) {
             poses_.push_back(keyframe.odom_from_camera);
         } else {
             add_gap(node, keyframe);
         }
-        index_.add(nodes_.back().view.descriptors);
+        trajectory_.keyframes.push_back({keyframe.id, keyframe.utime, Pose::Identity()});
     }
 
-    void add_odometry(int from, int to, const Keyframe& keyframe) {
-        const Pose& step = keyframe.previous_from_camera;
-        odometry_.push_back({from, to, step,
-                             graph::sqrt_information(keyframe.covariance, options_.odometry_sigma_m,
-                                                     options_.odometry_sigma_rad),
-                             false});
+    /// The node of a keyframe, -1 if there is none.
+    int node_of(int id) const {
+        const auto found = std::lower_bound(nodes_.begin(), nodes_.end(), id,
+                                            [](const Node& node, int wanted) { return node.id < wanted; });
+        return found != nodes_.end() && found->id == id ? static_cast<int>(found - nodes_.begin()) : -1;
+    }
+
+    /// `step` leads from the node; `detour` is how far it may be off besides, when the keyframe that odometry
+    /// named has gone.
+    void add_odometry(int from, int to, const Keyframe& keyframe, const Pose& step, const Drift& detour) {
         const double drift = options_.drift_per_metre * step.translation().norm() +
                              options_.drift_per_radian * rotation_angle(step);
+        Tie tie;
+        tie.edge = {from, to, step,
+                    graph::sqrt_information(keyframe.covariance, options_.odometry_sigma_m + detour.metres,
+                                            options_.odometry_sigma_rad + detour.radians),
+                    false};
+        tie.drift = Drift{drift, drift} + worst_sigmas(keyframe.covariance) + detour;
+        tie.is_step = true;
+        odometry_.push_back(tie);
+        link(tie);
         hangs_on_.back() = from;
-        link(from, to, Drift{drift, drift} + worst_sigmas(keyframe.covariance), true);
         poses_.push_back(orthonormalised(poses_[at(from)] * step));
     }
 
@@ -282,25 +329,35 @@ class PoseGraph::Impl {
             static_cast<double>(keyframe.utime) * 1e-6 - static_cast<double>(last.utime) * 1e-6, 0.0, 3600.0);
         const double reach = options_.max_lost_speed * seconds;
         const Matrix6d nothing_known = Matrix6d::Zero();
-        gaps_.push_back({node - 1, node,
-                         last.odom_from_camera.inverse(Eigen::Isometry) * keyframe.odom_from_camera,
-                         graph::sqrt_information(nothing_known, 1.0 + reach, std::numbers::pi), false});
-        link(node - 1, node, {reach, std::numbers::pi}, false);
+        Tie gap;
+        gap.edge = {node - 1, node,
+                    last.odom_from_camera.inverse(Eigen::Isometry) * keyframe.odom_from_camera,
+                    graph::sqrt_information(nothing_known, 1.0 + reach, std::numbers::pi), false};
+        gap.drift = {reach, std::numbers::pi};
+        gaps_.push_back(gap);
+        link(gap);
         poses_.push_back(orthonormalised(world_from_odom() * keyframe.odom_from_camera));
     }
 
     Pose world_from_odom() const { return trajectory_.world_from_odom; }
 
-    void link(int a, int b, const Drift& drift, bool odometry, int loop = -1) {
-        links_[at(a)].push_back({b, drift, odometry, loop});
-        links_[at(b)].push_back({a, drift, odometry, loop});
+    void link(const Tie& tie, int loop = -1) {
+        links_[at(tie.edge.from)].push_back({tie.edge.to, tie.drift, tie.is_step, loop});
+        links_[at(tie.edge.to)].push_back({tie.edge.from, tie.drift, tie.is_step, loop});
+    }
+
+    /// All links anew, after nodes went.
+    void relink() {
+        links_.assign(nodes_.size(), {});
+        for (const Tie& tie : odometry_) link(tie);
+        for (const Tie& tie : gaps_) link(tie);
+        for (std::size_t i = 0; i < loops_.size(); ++i) link(loops_[i], static_cast<int>(i));
     }
 
     /// Whether the poses follow a link. Not a loop closure that the last optimisation did not know, or let go
     /// of.
-    bool holds(const Link& link) const {
-        return link.loop < 0 || (link.loop < loops_applied_ && loops_[at(link.loop)].weight >= kDistrusted);
-    }
+    bool holds(const Link& link) const { return link.loop < 0 || holds(loops_[at(link.loop)]); }
+    static bool holds(const Tie& loop) { return loop.is_applied && loop.weight >= graph::kDistrusted; }
 
     /// Least drift from a node to each other one (Dijkstra).
     std::vector<Drift> drifts_from(int source) const {
@@ -333,7 +390,7 @@ class PoseGraph::Impl {
             std::vector<int> next;
             for (const int node : ring) {
                 for (const Link& link : links_[at(node)]) {
-                    if (!link.odometry || near[at(link.other)]) continue;
+                    if (!link.is_step || near[at(link.other)]) continue;
                     near[at(link.other)] = true;
                     next.push_back(link.other);
                 }
@@ -362,9 +419,10 @@ class PoseGraph::Impl {
     }
 
     std::vector<double> appearance_scores(const std::vector<bool>& near) const {
-        std::vector<double> scores = index_.scores(nodes_.back().view.descriptors);
+        const std::vector<double> by_place = index_.scores(nodes_.back().view.descriptors);
+        std::vector<double> scores(nodes_.size(), 0.0);
         for (std::size_t i = 0; i < scores.size(); ++i) {
-            if (near[i]) scores[i] = 0;
+            if (!near[i]) scores[i] = by_place[at(nodes_[i].place)];
         }
         return scores;
     }
@@ -451,21 +509,28 @@ class PoseGraph::Impl {
 
     void add_loop(int node, const graph::Verification& found) {
         carry_component(node, found.a_from_b);
-        loop_edges_.push_back(
-            {node, newest(), found.a_from_b,
-             graph::sqrt_information(found.covariance, options_.loop_sigma_m, options_.loop_sigma_rad),
-             true});
-        loops_.push_back({nodes_[at(node)].id, nodes_.back().id, found.a_from_b, found.covariance,
-                          found.matches, found.inliers, 1.0});
-        link(node, newest(),
-             worst_sigmas(found.covariance) + Drift{options_.loop_sigma_m, options_.loop_sigma_rad}, false,
-             static_cast<int>(loops_.size()) - 1);
+        Tie tie;
+        tie.edge = {node, newest(), found.a_from_b,
+                    graph::sqrt_information(found.covariance, options_.loop_sigma_m, options_.loop_sigma_rad),
+                    true};
+        tie.drift = worst_sigmas(found.covariance) + Drift{options_.loop_sigma_m, options_.loop_sigma_rad};
+        tie.closure = trajectory_.loop_closures++;
+        tie.is_known = tie.is_applied = false;
+        loops_.push_back(tie);
+        link(tie, static_cast<int>(loops_.size()) - 1);
+        closures_.push_back({nodes_[at(node)].id, nodes_.back().id, nodes_[at(node)].utime,
+                             nodes_.back().utime, found.a_from_b, found.covariance, found.matches,
+                             found.inliers, 1.0});
+        if (closures_.size() > kClosuresTold) {
+            closures_.erase(closures_.begin(), closures_.begin() + kClosuresTold / 2);
+            first_told_ += kClosuresTold / 2;
+        }
     }
 
     Components components() const {
         Components components(nodes_.size());
-        for (const auto& edge : odometry_) components.join(edge.from, edge.to);
-        for (const auto& edge : loop_edges_) components.join(edge.from, edge.to);
+        for (const auto& tie : odometry_) components.join(tie.edge.from, tie.edge.to);
+        for (const auto& tie : loops_) components.join(tie.edge.from, tie.edge.to);
         return components;
     }
 
@@ -488,17 +553,20 @@ class PoseGraph::Impl {
     /// All edges; of the gaps only those across which nothing else ties the parts. To start with, loop
     /// closures that counted as wrong are left out, and new ones are beyond doubt.
     std::vector<graph::PoseEdge> all_edges(bool to_start_with) const {
-        std::vector<graph::PoseEdge> edges = odometry_;
+        std::vector<graph::PoseEdge> edges;
         Components parts(nodes_.size());
-        for (const auto& edge : odometry_) parts.join(edge.from, edge.to);
-        for (std::size_t i = 0; i < loop_edges_.size(); ++i) {
-            if (to_start_with && loops_[i].weight < kDistrusted) continue;
-            edges.push_back(loop_edges_[i]);
-            edges.back().robust = !to_start_with || i < loops_optimised_;
-            parts.join(loop_edges_[i].from, loop_edges_[i].to);
+        for (const Tie& tie : odometry_) {
+            edges.push_back(tie.edge);
+            parts.join(tie.edge.from, tie.edge.to);
         }
-        for (const auto& gap : gaps_) {
-            if (parts.join(gap.from, gap.to)) edges.push_back(gap);
+        for (const Tie& tie : loops_) {
+            if (to_start_with && tie.weight < graph::kDistrusted) continue;
+            edges.push_back(tie.edge);
+            edges.back().robust = !to_start_with || tie.is_known;
+            parts.join(tie.edge.from, tie.edge.to);
+        }
+        for (const Tie& gap : gaps_) {
+            if (parts.join(gap.edge.from, gap.edge.to)) edges.push_back(gap.edge);
         }
         return edges;
     }
@@ -511,6 +579,7 @@ class PoseGraph::Impl {
 
     /// Takes the poses and landmarks that an optimisation found; later ones follow those they hang on.
     void take(const GraphOptimisation::Work& work) {
+        is_optimising_ = false;
         if (work.parts_moved != parts_moved_) {
             due_ = true;
             return;
@@ -522,20 +591,25 @@ class PoseGraph::Impl {
                 i < work.poses.size() ? work.poses[i] : orthonormalised(moves[at(hangs_on_[i])] * poses_[i]);
             moves.push_back(poses_[i] * before.inverse(Eigen::Isometry));
         }
-        loops_applied_ = work.loops;
         landmarks_.follow(work.landmarks, moves);
         landmarks_.merge();
         for (std::size_t i = 0; i < loops_.size(); ++i) {
-            const graph::PoseEdge& edge = loop_edges_[i];
-            const double error = graph::edge_error(edge, poses_[at(edge.from)], poses_[at(edge.to)]).norm();
-            loops_[i].weight = 1 / (1 + error * error / (options_.kernel_width * options_.kernel_width));
+            Tie& tie = loops_[i];
+            tie.is_applied = tie.is_applied || i < work.loops;
+            const double error = whitened_error(tie.edge);
+            tie.weight = 1 / (1 + error * error / (options_.kernel_width * options_.kernel_width));
+            if (tie.closure >= first_told_)
+                closures_[static_cast<std::size_t>(tie.closure - first_told_)].weight = tie.weight;
         }
     }
 
-    void publish() {
-        trajectory_.keyframes.push_back({nodes_.back().id, nodes_.back().utime, Pose::Identity()});
-        publish_poses();
-    }
+    void thin();
+    void thin_about(int node);
+    std::vector<int> place_of(int node) const;
+    bool is_alike(int a, int b) const;
+    bool may_go(int node) const;
+    bool let_go(int node);
+    const Tie* way_to_keeper(int node) const;
 
     void publish_poses() {
         const bool moved = std::any_of(
@@ -551,31 +625,34 @@ class PoseGraph::Impl {
             revision_poses_.push_back(poses_.back());
         }
         trajectory_.utime = nodes_.back().utime;
-        trajectory_.loop_closures = static_cast<int>(loops_.size());
         trajectory_.world_from_odom =
             orthonormalised(poses_.back() * nodes_.back().odom_from_camera.inverse(Eigen::Isometry));
         for (std::size_t i = 0; i < poses_.size(); ++i)
             trajectory_.keyframes[i].world_from_camera = poses_[i];
     }
 
-    static constexpr double kFar = 2;            // kernel widths: where a loop closure can no longer pull
-    static constexpr double kDistrusted = 0.05;  // weight of a loop closure that counts as wrong
+    static constexpr double kFar = 2;  // kernel widths: where a loop closure can no longer pull
+    static constexpr std::size_t kClosuresTold = 1024;  // by loop_closures()
+    static constexpr std::size_t kGoneKnown = 1024;     // keyframes that went and may yet be named
+    static constexpr int kRecent = 24;                  // newest keyframes, which all stay
 
     GraphOptions options_;
     graph::Landmarks landmarks_;
     double disagreement_ = 0;          ///< of planes since the last optimisation, standard deviations
     std::size_t since_optimised_ = 0;  ///< keyframes since the last optimisation
-    std::size_t loops_optimised_ = 0;  ///< of loop_edges_, how many the last optimisation knew
-    int loops_applied_ = 0;            ///< of loop_edges_, how many the poses follow
     bool due_ = false;                 ///< an optimisation
+    bool is_optimising_ = false;       ///< between prepare() and apply(): nodes keep their numbers
     int parts_moved_ = 0;              ///< how often a part was moved as a whole
-    std::vector<Node> nodes_;
-    std::vector<Pose> poses_;    ///< world_from_camera of each node
-    std::vector<int> hangs_on_;  ///< node that each was placed by; -1 for the first
+    std::vector<Node> nodes_;          ///< ascending id
+    std::vector<Pose> poses_;          ///< world_from_camera of each node
+    std::vector<int> hangs_on_;        ///< node that each was placed by; -1 for the first
     std::vector<std::vector<Link>> links_;
-    std::unordered_map<int, int> index_of_;  ///< node of a keyframe's id
-    std::vector<graph::PoseEdge> odometry_, loop_edges_, gaps_;
-    std::vector<LoopClosure> loops_;  ///< one a loop edge
+    std::vector<Tie> odometry_, loops_, gaps_;
+    std::vector<LoopClosure> closures_;  ///< the newest that were accepted
+    std::int64_t first_told_ = 0;        ///< number of the first of them
+    std::map<int, Successor> gone_;      ///< by the id of a keyframe that went, the newest of them
+    int thinned_up_to_ = -1;             ///< id of the newest keyframe about which it was thinned out
+    GraphCounts counts_;
     graph::PlaceIndex index_;
     std::vector<Pose> revision_poses_;  ///< of the nodes when they last made a revision
     KeyframeTrajectory trajectory_;
@@ -586,21 +663,159 @@ std::unique_ptr<GraphOptimisation::Work> PoseGraph::Impl::prepare() {
     work->edges = all_edges(false);
     if (worst_new_loop() > kFar * options_.kernel_width) {
         work->trusting_edges = all_edges(true);
-        work->new_loops.assign(loop_edges_.begin() + static_cast<std::ptrdiff_t>(loops_optimised_),
-                               loop_edges_.end());
+        for (const Tie& tie : loops_) {
+            if (!tie.is_known) work->new_loops.push_back(tie.edge);
+        }
     }
+    for (Tie& tie : loops_) tie.is_known = true;
     work->poses = poses_;
     work->landmarks = landmarks_.landmarks();
     work->sightings = landmarks_.shared();
     work->kernel_width = options_.kernel_width;
     work->max_iterations = options_.max_iterations;
-    work->loops = static_cast<int>(loops_.size());
+    work->loops = loops_.size();
     work->parts_moved = parts_moved_;
-    loops_optimised_ = loop_edges_.size();
+    is_optimising_ = true;
     since_optimised_ = 0;
     disagreement_ = 0;
     due_ = false;
     return work;
+}
+
+/// Where keyframes of one place pile up, the older ones go: after each keyframe that is no longer among the
+/// newest, which odometry may still name.
+void PoseGraph::Impl::thin() {
+    if (options_.max_alike == 0) return;
+    for (int node = 0; node <= newest() - kRecent && !is_optimising_; ++node) {
+        const int id = nodes_[at(node)].id;
+        if (id <= thinned_up_to_) continue;
+        thinned_up_to_ = id;
+        thin_about(node);
+        node = node_of(id);  // the number it has now
+    }
+}
+
+/// Of the keyframes about where this one stood, one that looks like max_alike newer ones is redundant, and
+/// there are at most max_place in all. The older goes, so that the graph knows the place as it is now.
+void PoseGraph::Impl::thin_about(int node) {
+    std::vector<int> place = place_of(node);  // newest first, this one included
+    std::vector<int> ids;                     // of those that go
+    for (std::size_t i = 1; i < place.size(); ++i) {
+        if (!is_alike(place[i], node)) continue;
+        int alike = 1;
+        for (std::size_t k = 1; k < i && alike < options_.max_alike; ++k)
+            alike += is_alike(place[i], place[k]);
+        if (alike >= options_.max_alike) ids.push_back(nodes_[at(place[i])].id);
+    }
+    for (std::size_t i = place.size(); i-- > 1 && place.size() - ids.size() > at(options_.max_place);) {
+        const int id = nodes_[at(place[i])].id;
+        if (std::find(ids.begin(), ids.end(), id) == ids.end()) ids.push_back(id);
+    }
+    bool any = false;
+    for (const int id : ids) any = let_go(node_of(id)) || any;
+    if (any) relink();
+}
+
+/// The keyframes that stood where this older one did, itself included, the newest first. Only where the poses
+/// say so for certain.
+std::vector<int> PoseGraph::Impl::place_of(int node) const {
+    const std::vector<Drift> drifts = drifts_from(node);
+    std::vector<int> place;
+    for (int i = node; i >= 0; --i) {
+        const Pose apart = poses_[at(i)].inverse(Eigen::Isometry) * poses_[at(node)];
+        if (apart.translation().norm() > options_.place_m || rotation_angle(apart) > options_.place_rad)
+            continue;
+        if (drifts[at(i)].metres > options_.place_m || drifts[at(i)].radians > options_.place_rad) continue;
+        place.push_back(i);
+    }
+    return place;
+}
+
+/// Whether two keyframes of one place show the same: the same points or, where there are none, the same
+/// planes; and neither saw through what the other saw.
+bool PoseGraph::Impl::is_alike(int a, int b) const {
+    constexpr int kFewPoints = 20;
+    constexpr double kSlack_m = 0.02;
+    const graph::View &view_a = nodes_[at(a)].view, &view_b = nodes_[at(b)].view;
+    const Pose a_from_b = poses_[at(a)].inverse(Eigen::Isometry) * poses_[at(b)];
+    const graph::VerificationOptions options = verification_options(options_);
+    const graph::PointAgreement points = graph::compare_points(view_a, view_b, a_from_b, options, kSlack_m);
+    const bool is_bare = view_a.points.size() < kFewPoints && view_b.points.size() < kFewPoints;
+    if (!is_bare && points.agree < std::max<double>(kFewPoints, options_.min_alike_ratio * points.visible))
+        return false;
+    const graph::PlaneAgreement planes =
+        graph::compare_planes(view_a, view_b, a_from_b, options_.noise, kSlack_m);
+    if (is_bare && planes.agree == 0) return false;
+    return planes.contradict <= options_.max_contradiction * (planes.agree + planes.contradict);
+}
+
+/// Not the first keyframe, which is the world's; nor one with a loop closure that the poses do not follow
+/// yet.
+bool PoseGraph::Impl::may_go(int node) const {
+    return node > 0 && std::none_of(loops_.begin(), loops_.end(),
+                                    [&](const Tie& tie) { return tie.touches(node) && !tie.is_applied; });
+}
+
+/// The tie to the nearest of the nodes that are tied to this one beyond doubt.
+const Tie* PoseGraph::Impl::way_to_keeper(int node) const {
+    constexpr double kTrusted = 0.5;  // weight of a loop closure
+    const Tie* best = nullptr;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const auto* ties : {&odometry_, &loops_}) {
+        for (const Tie& tie : *ties) {
+            if (!tie.touches(node) || tie.weight < kTrusted) continue;
+            const Pose apart = poses_[at(tie.other(node))].inverse(Eigen::Isometry) * poses_[at(node)];
+            const double distance = apart.translation().norm() + rotation_angle(apart);
+            if (distance >= nearest) continue;
+            nearest = distance;
+            best = &tie;
+        }
+    }
+    return best;
+}
+
+/// Removes a node and hands what it knows to the one that keeps it; false where there is none.
+bool PoseGraph::Impl::let_go(int node) {
+    const Tie* found = may_go(node) ? way_to_keeper(node) : nullptr;
+    if (found == nullptr) return false;
+    const Tie to_keeper = *found;
+    const int keeper = to_keeper.other(node), id = nodes_[at(node)].id;
+    const Successor successor{nodes_[at(keeper)].id,
+                              poses_[at(keeper)].inverse(Eigen::Isometry) * poses_[at(node)],
+                              to_keeper.drift};
+    for (auto& [gone, s] : gone_) {
+        if (s.keeper_id != id) continue;
+        s = {successor.keeper_id, successor.keeper_from_gone * s.keeper_from_gone, s.drift + successor.drift};
+    }
+    gone_[id] = successor;
+    if (gone_.size() > kGoneKnown) gone_.erase(gone_.begin());
+
+    for (auto* ties : {&odometry_, &loops_, &gaps_}) graph::hand_over(*ties, to_keeper, node, poses_);
+    landmarks_.hand_over(node, keeper, successor.keeper_from_gone);
+    index_.remove(nodes_[at(node)].place, nodes_[at(node)].view.descriptors);
+    for (int& base : hangs_on_) {
+        if (base == node) base = keeper;
+        if (base > node) --base;
+    }
+    const auto erase = [&](auto& values) {
+        if (at(node) < values.size()) values.erase(values.begin() + node);
+    };
+    erase(hangs_on_);
+    erase(nodes_);
+    erase(poses_);
+    erase(revision_poses_);
+    erase(trajectory_.keyframes);
+    ++counts_.replaced;
+    return true;
+}
+
+std::size_t PoseGraph::Impl::memory_bytes() const {
+    std::size_t bytes = index_.entries() * sizeof(std::int32_t) + closures_.capacity() * sizeof(LoopClosure) +
+                        gone_.size() * sizeof(std::pair<int, Successor>) + landmarks_.memory_bytes();
+    for (const auto* ties : {&odometry_, &loops_, &gaps_}) bytes += ties->capacity() * sizeof(Tie);
+    for (const Node& node : nodes_) bytes += sizeof(Node) + graph::memory_bytes(node.view);
+    for (const auto& links : links_) bytes += sizeof(links) + links.capacity() * sizeof(Link);
+    return bytes;
 }
 
 GraphOptimisation::GraphOptimisation(std::unique_ptr<Work> work) : work_(std::move(work)) {}
@@ -647,6 +862,18 @@ const KeyframeTrajectory& PoseGraph::trajectory() const {
 
 const std::vector<LoopClosure>& PoseGraph::loop_closures() const {
     return impl_->loop_closures();
+}
+
+bool PoseGraph::expects(int id) const {
+    return impl_->expects(id);
+}
+
+const GraphCounts& PoseGraph::counts() const {
+    return impl_->counts();
+}
+
+std::size_t PoseGraph::memory_bytes() const {
+    return impl_->memory_bytes();
 }
 
 }  // namespace planemap

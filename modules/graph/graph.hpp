@@ -31,6 +31,13 @@ struct GraphOptions {
     double min_visible_ratio = 0.12;   ///< inliers, of the points that both views should see
     double max_contradiction = 0.25;   ///< share of plane samples that the other view saw through
 
+    int max_alike = 2;              ///< newer keyframes of the same place that look alike: an older one goes;
+                                    ///< 0: all stay
+    int max_place = 8;              ///< keyframes of one place, whatever they look like; the oldest goes
+    double place_m = 0.2;           ///< keyframes are of one place when they stand nearer than this,
+    double place_rad = 0.25;        ///< and turned by less
+    double min_alike_ratio = 0.25;  ///< like points, of those that both should see, of views that look alike
+
     double surroundings_from_m = 0.3;  ///< a loop closure that moves the newest keyframe by more (metres plus
                                        ///< radians) must also fit what was seen around it
 
@@ -63,13 +70,20 @@ struct GraphOptions {
 
 /// Two keyframes that saw the same place.
 struct LoopClosure {
-    int from_id = -1, to_id = -1;            ///< from the older to the newer one
-    Pose from_from_to = Pose::Identity();    ///< newer camera in the older camera's frame
-    Matrix6d covariance = Matrix6d::Zero();  ///< translation, rotation; newer camera's frame
-    int matches = 0;                         ///< descriptors matched
-    int inliers = 0;                         ///< points that agree
+    int from_id = -1, to_id = -1;               ///< from the older to the newer one
+    std::int64_t from_utime = 0, to_utime = 0;  ///< Keyframe::utime of both
+    Pose from_from_to = Pose::Identity();       ///< newer camera in the older camera's frame
+    Matrix6d covariance = Matrix6d::Zero();     ///< translation, rotation; newer camera's frame
+    int matches = 0;                            ///< descriptors matched
+    int inliers = 0;                            ///< points that agree
     double weight =
         1;  ///< in the last optimisation, 0 to 1: near 0 when the rest of the graph contradicts it
+};
+
+/// What a graph did without.
+struct GraphCounts {
+    std::size_t replaced = 0;           ///< keyframes that went for newer ones of the same place
+    std::size_t features_left_out = 0;  ///< features without a point before the camera, or one too many
 };
 
 /// One optimisation of a PoseGraph as it was when prepared, with a copy of all that it needs: run() may run
@@ -94,6 +108,12 @@ class GraphOptimisation {
 /// Keyframes, the edges between them, and the poses that fit all edges best. World is the odom frame of the
 /// first keyframe, and the first keyframe never moves. The same keyframes in the same order give the same
 /// result.
+///
+/// Memory grows with the places seen, not with time: where a camera comes again and again, a keyframe that
+/// looks like max_alike newer ones goes, once it is not among the newest 24. Its edges and what it saw of
+/// landmarks go over to the nearest keyframe that it is tied to, its id is no longer in the trajectory, and
+/// an edge of a later keyframe from it leads from that one. The older goes, so that changed light or a
+/// changed room replaces what was.
 class PoseGraph {
   public:
     /// Throws std::invalid_argument for bad options.
@@ -103,11 +123,11 @@ class PoseGraph {
     PoseGraph& operator=(PoseGraph&&) noexcept;
 
     /// Adds a keyframe, looks for loop closures, optimises if one was found. Throws std::invalid_argument
-    /// naming the field, and leaves the graph as it was, for a keyframe whose id is not greater than the last
-    /// one's, or with values that are not finite, poses that are not rigid, regions that are not valid. A
-    /// covariance that is not usable counts as large. An edge from a keyframe that never arrived counts as
-    /// none: like after a loss, the keyframe is placed by odom_from_camera until a loop closure ties it to
-    /// the others.
+    /// naming the field, and leaves the graph as it was, for a keyframe whose id does not follow the last
+    /// one's (see expects()), or with values that are not finite, poses that are not rigid, regions that are
+    /// not valid. A covariance that is not usable counts as large. An edge from a keyframe that never arrived
+    /// counts as none: like after a loss, the keyframe is placed by odom_from_camera until a loop closure
+    /// ties it to the others.
     const KeyframeTrajectory& add(const Keyframe& keyframe);
 
     /// add() in steps, for a process that must not wait: insert() does all but optimise, and due() says
@@ -122,9 +142,16 @@ class PoseGraph {
     /// Optimises once more, with all that is known; for the end of a run.
     const KeyframeTrajectory& finish();
 
+    /// True for the ids that may come next: greater than the last one's by at most 10,000. When the second
+    /// keyframe's id is not, nobody knows which of both is a stray; add() then starts anew with it.
+    bool expects(int id) const;
+
     const KeyframeTrajectory& trajectory() const;
-    /// All that were accepted, in the order they were found.
+    /// Those that were accepted, in the order they were found: of more than 1024, the newest.
     const std::vector<LoopClosure>& loop_closures() const;
+    const GraphCounts& counts() const;
+    /// Bytes that are kept, roughly.
+    std::size_t memory_bytes() const;
 
   private:
     class Impl;

@@ -32,6 +32,14 @@ void add_flags(Flags& flags, GraphOptions& options, const std::string& prefix) {
               "inliers, of the points that both views should see");
     flags.add("max-contradiction", options.max_contradiction,
               "share of plane samples that the other view saw through");
+    flags.add("max-alike", options.max_alike,
+              "newer keyframes of the same place that look alike: an older one goes; 0: all stay");
+    flags.add("max-place", options.max_place,
+              "keyframes of one place, whatever they look like; the oldest goes");
+    flags.add("place-m", options.place_m, "keyframes are of one place when they stand nearer than this");
+    flags.add("place-rad", options.place_rad, "and turned by less, radians");
+    flags.add("min-alike-ratio", options.min_alike_ratio,
+              "like points, of those that both should see, of views that look alike");
     flags.add("surroundings-from-m", options.surroundings_from_m,
               "a loop closure that moves the newest keyframe by more must also fit what was seen around it");
     flags.add("drift-per-metre", options.drift_per_metre,

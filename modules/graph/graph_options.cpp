@@ -40,6 +40,11 @@ void GraphOptions::validate() const {
     share(min_inlier_ratio, "min_inlier_ratio");
     share(min_visible_ratio, "min_visible_ratio");
     share(max_contradiction, "max_contradiction");
+    count(max_alike, 0, "max_alike");
+    count(max_place, 1, "max_place");
+    positive(place_m, "place_m");
+    positive(place_rad, "place_rad");
+    share(min_alike_ratio, "min_alike_ratio");
     not_negative(surroundings_from_m, "surroundings_from_m");
     not_negative(drift_per_metre, "drift_per_metre");
     not_negative(drift_per_radian, "drift_per_radian");

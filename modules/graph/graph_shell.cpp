@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "graph/graph_shell.hpp"
 
+#include <spdlog/spdlog.h>
+
 #include <chrono>
 
 #include "messages/channels.hpp"
@@ -8,6 +10,12 @@
 #include "messages/decode.hpp"
 
 namespace planemap {
+
+namespace {
+constexpr const char* kOutOfOrder = "keyframes with an id out of order";
+constexpr const char* kFeatures =
+    "features without a point before the camera, or beyond the most of a keyframe";
+}  // namespace
 
 GraphShell::GraphShell(Bus& bus, const GraphOptions& options, Optimising optimising)
     : bus_(bus), optimising_(optimising), graph_(options) {
@@ -19,6 +27,12 @@ void GraphShell::on_keyframe(const RawMessage& message) {
     const keyframe_t received = decode<keyframe_t>(message.bytes);
     const Keyframe keyframe = from_message(received);
     if (!keyframe_guard_.admits(received.seq, received.utime, message.bytes)) return;
+    if (!graph_.expects(keyframe.id)) {
+        refuse(keyframe.id);
+        // Of two, nobody knows which is the stray: the graph goes on with the second.
+        if (graph_.trajectory().keyframes.size() > 1) return;
+    }
+    const std::size_t left_out = graph_.counts().features_left_out;
     try {
         const ModuleStatus::Work work(status_);
         if (optimising_ == Optimising::kInHandler)
@@ -28,8 +42,27 @@ void GraphShell::on_keyframe(const RawMessage& message) {
     } catch (const std::invalid_argument& error) {
         throw MessageError(error.what());
     }
+    status_.lost(kFeatures, static_cast<std::int64_t>(graph_.counts().features_left_out - left_out));
     publish();
     start_if_due();
+}
+
+/// Says once of each run of refused keyframes what it looks like.
+void GraphShell::refuse(int id) {
+    const int last = graph_.trajectory().keyframes.back().id;
+    status_.dropped();
+    status_.lost(kOutOfOrder);
+    const bool is_next_of_them = last_refused_ && id == *last_refused_ + 1;
+    last_refused_ = id;
+    if (is_next_of_them) return;
+    const std::string what = "keyframe " + std::to_string(id) + " after keyframe " + std::to_string(last);
+    const std::string text =
+        id <= last ? what +
+                         ": odometry started again, or sent it twice; what it sends is left out until its "
+                         "ids go on from there, or planemap-graph and planemap-map are started again too"
+                   : what + " is too far ahead to follow it, and is left out";
+    spdlog::warn("graph: {}", text);
+    status_.set_text(text);
 }
 
 void GraphShell::start_if_due() {
@@ -77,8 +110,11 @@ void GraphShell::publish() {
     bus_.publish(channels::kTrajectory, to_message(trajectory, seq_++));
     published_us_ = now_us();
     status_.published();
-    status_.set_text(std::to_string(trajectory.keyframes.size()) + " keyframes, " +
-                     std::to_string(trajectory.loop_closures) + " loop closures");
+    std::string text = std::to_string(trajectory.keyframes.size()) + " keyframes, " +
+                       std::to_string(trajectory.loop_closures) + " loop closures";
+    if (const std::size_t replaced = graph_.counts().replaced; replaced > 0)
+        text += ", " + std::to_string(replaced) + " keyframes replaced by newer ones";
+    status_.set_text(text);
 }
 
 }  // namespace planemap

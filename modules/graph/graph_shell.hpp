@@ -32,6 +32,7 @@ class GraphShell : public Shell {
 
   private:
     void on_keyframe(const RawMessage& message);
+    void refuse(int id);
     void start_if_due();
     void publish();
     void republish_if_due();
@@ -44,7 +45,8 @@ class GraphShell : public Shell {
     ModuleStatus status_{"graph"};
     StreamGuard keyframe_guard_{channels::kKeyframe, "keyframes", status_};
     std::int32_t seq_ = 0;
-    std::int64_t published_us_ = 0;  ///< wall clock of the last trajectory; 0: none yet
+    std::int64_t published_us_ = 0;    ///< wall clock of the last trajectory; 0: none yet
+    std::optional<int> last_refused_;  ///< id of the last keyframe that was left out
 };
 
 /// Flags for the options, each named --<prefix>NAME.

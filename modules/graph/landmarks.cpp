@@ -118,6 +118,41 @@ void Landmarks::merge() {
     for (Sighting& sighting : sightings_) sighting.landmark = standing(sighting.landmark);
 }
 
+void Landmarks::hand_over(int gone, int keeper, const Pose& keeper_from_gone) {
+    const auto sees = [&](int landmark) {
+        return std::any_of(sightings_.begin(), sightings_.end(), [&](const Sighting& sighting) {
+            return sighting.node == keeper && sighting.landmark == landmark;
+        });
+    };
+    for (Sighting& sighting : sightings_) {
+        if (sighting.node != gone) continue;
+        sighting.node = sees(sighting.landmark) ? -1 : keeper;
+        for (auto& p : sighting.points_camera) p = keeper_from_gone * p;
+    }
+    std::erase_if(sightings_, [](const Sighting& sighting) { return sighting.node < 0; });
+    for (Sighting& sighting : sightings_) sighting.node -= sighting.node > gone;
+    forget_unseen();
+}
+
+/// Landmarks that stand for nothing any more go, and the others are numbered and counted anew.
+void Landmarks::forget_unseen() {
+    for (Landmark& landmark : landmarks_) landmark.sightings = 0;
+    for (Sighting& sighting : sightings_) {
+        sighting.landmark = standing(sighting.landmark);
+        ++landmarks_[static_cast<std::size_t>(sighting.landmark)].sightings;
+    }
+    std::vector<int> number(landmarks_.size(), -1);
+    std::vector<Landmark> kept;
+    for (std::size_t i = 0; i < landmarks_.size(); ++i) {
+        if (landmarks_[i].sightings == 0) continue;
+        number[i] = static_cast<int>(kept.size());
+        kept.push_back(landmarks_[i]);
+    }
+    landmarks_ = std::move(kept);
+    for (Sighting& sighting : sightings_)
+        sighting.landmark = number[static_cast<std::size_t>(sighting.landmark)];
+}
+
 std::vector<Sighting> Landmarks::shared() const {
     std::vector<Sighting> shared;
     for (const Sighting& sighting : sightings_) {

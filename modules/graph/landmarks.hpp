@@ -55,10 +55,18 @@ class Landmarks {
     /// Merges landmarks that coincide by the same rules; call it after the poses moved.
     void merge();
 
+    /// Lets a node go: what it saw becomes its keeper's sightings, where the keeper has none of the same
+    /// landmark itself. Sightings of nodes with higher numbers are renumbered by one, and landmarks that were
+    /// merged into others, or that nobody sees any more, end. Not between shared() and follow().
+    void hand_over(int gone, int keeper, const Pose& keeper_from_gone);
+
     /// Sightings of landmarks that at least two keyframes share.
     std::vector<Sighting> shared() const;
     std::vector<Landmark>& landmarks() { return landmarks_; }
     const std::vector<Landmark>& landmarks() const { return landmarks_; }
+    std::size_t memory_bytes() const {
+        return landmarks_.capacity() * sizeof(Landmark) + sightings_.capacity() * sizeof(Sighting);
+    }
 
   private:
     struct Candidate {
@@ -68,6 +76,7 @@ class Landmarks {
     };
     bool fits(const Candidate& region, const Landmark& landmark) const;
     int standing(int landmark) const;
+    void forget_unseen();
 
     LandmarkOptions options_;
     std::vector<Landmark> landmarks_;

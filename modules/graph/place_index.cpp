@@ -40,18 +40,32 @@ PlaceIndex::Words PlaceIndex::words(std::span<const Descriptor> descriptors) con
     return words;
 }
 
-void PlaceIndex::add(std::span<const Descriptor> descriptors) {
+int PlaceIndex::add(std::span<const Descriptor> descriptors) {
+    const int place = free_.empty() ? numbers_++ : free_.back();
+    if (!free_.empty()) free_.pop_back();
     const Words mine = words(descriptors);
     for (std::size_t table = 0; table < kTables; ++table) {
         for (const auto word : mine[table]) {
             Listing& listing = places_of_[table][word];
             if (++listing.count <= static_cast<std::int32_t>(kMostPlaces))
-                listing.places.push_back(size_);
+                listing.places.push_back(place);
             else
                 std::vector<std::int32_t>().swap(listing.places);
         }
     }
-    ++size_;
+    return place;
+}
+
+void PlaceIndex::remove(int place, std::span<const Descriptor> descriptors) {
+    const Words mine = words(descriptors);
+    for (std::size_t table = 0; table < kTables; ++table) {
+        for (const auto word : mine[table]) {
+            Listing& listing = places_of_[table][word];
+            --listing.count;
+            std::erase(listing.places, place);
+        }
+    }
+    free_.push_back(place);
 }
 
 std::size_t PlaceIndex::entries() const {
@@ -63,14 +77,14 @@ std::size_t PlaceIndex::entries() const {
 }
 
 std::vector<double> PlaceIndex::scores(std::span<const Descriptor> descriptors) const {
-    std::vector<double> scores(static_cast<std::size_t>(size_), 0.0);
+    std::vector<double> scores(static_cast<std::size_t>(numbers_), 0.0);
     const Words mine = words(descriptors);
-    const std::size_t too_common = std::max<std::size_t>(20, static_cast<std::size_t>(size_) / 10);
+    const std::size_t too_common = std::max<std::size_t>(20, static_cast<std::size_t>(size()) / 10);
     double total = 0;
     for (std::size_t table = 0; table < kTables; ++table) {
         for (const auto word : mine[table]) {
             const Listing& listing = places_of_[table][word];
-            const double weight = std::log1p(size_ / (1.0 + listing.count));
+            const double weight = std::log1p(size() / (1.0 + listing.count));
             total += weight;
             if (listing.places.size() > too_common) continue;
             for (const auto place : listing.places) scores[static_cast<std::size_t>(place)] += weight;

@@ -12,20 +12,23 @@ namespace planemap::graph {
 
 /// Finds places by their looks. Descriptors are hashed by a few fixed random choices of 16 of their bits
 /// (locality-sensitive hashing); each hash value lists the places that have it. A place scores for each hash
-/// it shares with the query, the more the rarer the hash is. Places are numbered in the order they are added.
-/// A hash that more than 256 places have tells no place any more and lists none: that bounds a query to
-/// 6 x 256 steps a descriptor and the index to 400 MB, however many places there are (10,000 with 600
-/// descriptors each take about 150 MB).
+/// it shares with the query, the more the rarer the hash is. Places are numbered in the order they are added;
+/// the number of one that was removed is given to the next. A hash that more than 256 places have tells no
+/// place any more and lists none: that bounds a query to 6 x 256 steps a descriptor and the index to 400 MB,
+/// however many places there are (10,000 with 600 descriptors each take about 150 MB).
 class PlaceIndex {
   public:
     PlaceIndex();
 
-    /// Adds the next place.
-    void add(std::span<const Descriptor> descriptors);
-    int size() const { return size_; }
+    /// Adds a place and returns its number.
+    int add(std::span<const Descriptor> descriptors);
+    /// Forgets a place; give the descriptors that it was added with.
+    void remove(int place, std::span<const Descriptor> descriptors);
+    /// Places there are.
+    int size() const { return numbers_ - static_cast<int>(free_.size()); }
     /// Of all lists together: what the index remembers, 4 bytes each.
     std::size_t entries() const;
-    /// A score for each place, at least 0; it is the share of the query's weight that the place has too.
+    /// A score for each number, at least 0; it is the share of the query's weight that the place has too.
     std::vector<double> scores(std::span<const Descriptor> descriptors) const;
 
   private:
@@ -40,7 +43,8 @@ class PlaceIndex {
 
     Words words(std::span<const Descriptor> descriptors) const;
 
-    int size_ = 0;
+    int numbers_ = 0;        ///< given so far
+    std::vector<int> free_;  ///< of removed places
     std::array<std::array<std::uint8_t, kBits>, kTables> bits_{};
     std::array<std::vector<Listing>, kTables> places_of_;
 };

@@ -32,4 +32,15 @@ double overlap(const View& a, const View& b, const Pose& a_from_b) {
     return seen / static_cast<double>(b.points.size());
 }
 
+std::size_t memory_bytes(const View& view) {
+    std::size_t bytes = view.points.capacity() * sizeof(Eigen::Vector3d) +
+                        view.descriptors.capacity() * sizeof(Descriptor) +
+                        view.regions.capacity() * sizeof(PlanarRegion);
+    for (const PlanarRegion& region : view.regions) {
+        for (const Ring& ring : region.outline.rings)
+            bytes += sizeof ring + ring.capacity() * sizeof(Eigen::Vector2d);
+    }
+    return bytes;
+}
+
 }  // namespace planemap::graph

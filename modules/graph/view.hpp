@@ -29,4 +29,7 @@ View make_view(const Keyframe& keyframe, int max_features);
 /// Share of the points of b that a would see if b's camera stood at a_from_b; 0 without points.
 double overlap(const View& a, const View& b, const Pose& a_from_b);
 
+/// Bytes it takes, by capacity.
+std::size_t memory_bytes(const View& view);
+
 }  // namespace planemap::graph

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "core/validation.hpp"
+#include "map/hand_over.hpp"
 #include "map/labels.hpp"
 
 namespace planemap {
@@ -31,6 +32,10 @@ constexpr int kAllCells = 1 << 20;
 /// Views that a rebuild looks through a plane with, and more of them for each square metre.
 constexpr double kLooks = 24, kLooksPerM2 = 1;
 constexpr std::size_t kMaxWaiting = 4096;
+/// Keyframes between two that arrive.
+constexpr std::int64_t kMostMissed = 10000;
+/// Keyframes near one that goes, which take over what it saw.
+constexpr std::size_t kHeirs = 8;
 /// Hits of a look through a cell: 2^1.
 constexpr int kDoubtStrength = 1;
 
@@ -119,7 +124,7 @@ void PlaneMapper::start_from(const PlaneMap& map) {
             reach = std::max(reach, std::abs(static_cast<double>(plane.outline.unit) * steps));
         if (!(plane.id >= 0 && plane.id < 1 << 30 && reach <= options_.max_extent_m &&
               static_cast<double>(plane.center.norm()) <= kMaxCoordinate_m)) {
-            ++rejected_;
+            ++losses_.planes_refused;
             continue;
         }
         fixed_.emplace_back(plane, options_.outline_cell_m);
@@ -135,13 +140,23 @@ void PlaneMapper::start_from(const PlaneMap& map) {
 }
 
 void PlaneMapper::add(const Keyframe& keyframe) {
-    if (keyframe.id <= folded_up_to_) return;  // what it saw is in the planes
+    if (keyframe.id <= folded_up_to_) {  // what it saw is in the planes
+        ++losses_.keyframes_too_late;
+        return;
+    }
+    if (newest_id_ >= 0 && keyframe.id - std::int64_t{newest_id_} > kMostMissed) {
+        ++losses_.keyframes_far_ahead;
+        return;
+    }
+    newest_id_ = std::max(newest_id_, keyframe.id);
     std::vector<PlanarRegion> regions;
     for (const PlanarRegion& region : keyframe.regions) {
-        if (regions.size() < kMaxRegions && is_usable(region)) {
-            regions.push_back(region);
+        if (!is_usable(region)) {
+            ++losses_.regions_refused;
+        } else if (regions.size() == kMaxRegions) {
+            ++losses_.regions_too_many;
         } else {
-            ++rejected_;
+            regions.push_back(region);
         }
     }
     std::stable_sort(regions.begin(), regions.end(),
@@ -163,7 +178,7 @@ void PlaneMapper::drop_waiting() {
     for (std::size_t n = waiting(); n > kMaxWaiting; --n) {
         keyframes_.erase(std::find_if(keyframes_.begin(), keyframes_.end(),
                                       [](const auto& entry) { return !entry.second.world_from_camera; }));
-        ++dropped_;
+        ++losses_.keyframes_unplaced;
     }
 }
 
@@ -173,9 +188,15 @@ void PlaneMapper::add(const Keyframe& keyframe, const Pose& world_from_camera) {
 }
 
 void PlaneMapper::update(const KeyframeTrajectory& trajectory) {
+    replace(replacements(named_, trajectory.keyframes));
+    named_ = trajectory.keyframes;
     bool moved = false;
     for (const KeyframePose& named : trajectory.keyframes) {
-        if (named.id <= folded_up_to_ || !is_near(named.world_from_camera)) continue;
+        if (named.id <= folded_up_to_) continue;
+        if (!is_near(named.world_from_camera)) {
+            ++losses_.poses_refused;
+            continue;
+        }
         poses_[named.id] = named.world_from_camera;
         const auto kept = keyframes_.find(named.id);
         if (kept == keyframes_.end() || !kept->second.world_from_camera) continue;
@@ -267,7 +288,7 @@ void PlaneMapper::draw(Surface& surface, const PlacedRegion& placed, const Store
     outline_in(surface.grid.world_from_grid().inverse(Eigen::Isometry) * placed.box.frame_from_box, region,
                keyframe, polygon_);
     surface.unshown += surface.grid.add(polygon_, strength(region));
-    surface.keyframes += surface.last_keyframe != keyframe_id;
+    if (surface.last_keyframe != keyframe_id) surface.keyframes += region.keyframes;
     surface.last_keyframe = keyframe_id;
 }
 
@@ -291,7 +312,10 @@ void PlaneMapper::integrate(int keyframe_id) {
     for (StoredRegion& region : keyframe.regions) {
         region.plane = -1;
         const PlacedRegion placed(world_from_camera, region);
-        if (!(placed.box.frame_from_box.translation().norm() <= kMaxCoordinate_m)) continue;
+        if (!(placed.box.frame_from_box.translation().norm() <= kMaxCoordinate_m)) {
+            ++losses_.regions_too_far;
+            continue;
+        }
         const std::size_t at = join(set_, placed, region, keyframe);
         Surface& surface = set_.surfaces()[at];
         draw(surface, placed, region, keyframe, keyframe_id);
@@ -440,14 +464,53 @@ void PlaneMapper::count_keyframes() {
         if (at != surfaces.end()) at->second->keyframes += fixed.keyframes;
     }
     for (auto& [id, keyframe] : keyframes_) {
+        std::map<int, int> saw;  // how many keyframes' views of each plane it holds
         for (StoredRegion& region : keyframe.regions) {
             region.plane = resolved(region.plane);
-            const auto at = surfaces.find(region.plane);
+            saw[region.plane] = std::max(saw[region.plane], region.keyframes);
+        }
+        for (const auto& [plane, keyframes] : saw) {
+            const auto at = surfaces.find(plane);
             if (at == surfaces.end()) continue;
-            at->second->keyframes += at->second->last_keyframe != id;
+            at->second->keyframes += keyframes;
             at->second->last_keyframe = id;
         }
     }
+}
+
+/// Lets keyframes go that the graph replaced; what they saw goes over to those near them.
+void PlaneMapper::replace(const std::vector<Replacement>& gone) {
+    if (gone.empty()) return;
+    for (auto& [id, keyframe] : keyframes_)
+        for (StoredRegion& region : keyframe.regions) region.plane = resolved(region.plane);
+    std::vector<StoredKeyframe> leaving;
+    for (const Replacement& replacement : gone) {
+        poses_.erase(replacement.id);
+        const auto kept = keyframes_.find(replacement.id);
+        if (kept == keyframes_.end() || !kept->second.world_from_camera) continue;
+        leaving.push_back(std::move(kept->second));
+        keyframes_.erase(kept);
+    }
+    for (const StoredKeyframe& keyframe : leaving) {
+        hand_over(keyframe, heirs_of(keyframe));
+        ++replaced_;
+        settled_ = false;
+    }
+}
+
+/// The keyframes in the map that stand nearest to one that goes, the nearest first.
+std::vector<StoredKeyframe*> PlaneMapper::heirs_of(const StoredKeyframe& gone) {
+    std::vector<std::pair<double, StoredKeyframe*>> near;
+    for (auto& [id, keyframe] : keyframes_) {
+        if (!keyframe.world_from_camera) continue;
+        const Pose apart = gone.world_from_camera->inverse(Eigen::Isometry) * *keyframe.world_from_camera;
+        near.emplace_back(apart.translation().norm() + rotation_angle(apart), &keyframe);
+    }
+    std::stable_sort(near.begin(), near.end(), [](auto& a, auto& b) { return a.first < b.first; });
+    std::vector<StoredKeyframe*> heirs;
+    for (const auto& [distance, keyframe] : near)
+        if (heirs.size() < kHeirs) heirs.push_back(keyframe);
+    return heirs;
 }
 
 /// Drops keyframes that are taken not to move any more, and keeps what they saw in fixed planes.

@@ -11,6 +11,7 @@
 #include "core/camera.hpp"
 #include "core/keyframe.hpp"
 #include "core/plane_map.hpp"
+#include "core/replacement.hpp"
 #include "map/intersections.hpp"
 #include "map/surface.hpp"
 
@@ -50,6 +51,18 @@ struct MapOptions {
     void validate() const;
 };
 
+/// What a mapper left out, by the reason.
+struct MapLosses {
+    std::size_t regions_refused = 0;   ///< not valid, without a plane, or larger or farther than can be seen
+    std::size_t regions_too_many = 0;  ///< of one keyframe, after the 256th
+    std::size_t regions_too_far = 0;   ///< more than 100 km from the world's origin
+    std::size_t planes_refused = 0;    ///< of start_from()
+    std::size_t poses_refused = 0;     ///< of trajectories: no pose, or more than 100 km away
+    std::size_t keyframes_unplaced = 0;   ///< that waited for a pose while 4096 newer ones came
+    std::size_t keyframes_too_late = 0;   ///< that came again after they were folded
+    std::size_t keyframes_far_ahead = 0;  ///< with an id more than 10,000 after the largest one
+};
+
 /// Builds the map of planes from keyframes and their poses (paper section 2.3).
 ///
 /// A keyframe's regions enter the map when both the keyframe and a pose for it are known, whichever comes
@@ -82,7 +95,9 @@ class PlaneMapper {
     void add(const Keyframe& keyframe, const Pose& world_from_camera);
 
     /// Takes new poses: waiting keyframes named in it enter the map, and if earlier ones moved, the map is
-    /// rebuilt. Keyframes it does not name keep their pose; invalid poses are ignored.
+    /// rebuilt. Invalid poses are ignored. Keyframes that no trajectory named keep their pose. One that the
+    /// last trajectory named and this one does not was replaced by others of its place (replacements()): what
+    /// it saw goes over to the nearest eight of those, see hand_over().
     void update(const KeyframeTrajectory& trajectory);
 
     /// Brings the map into the form that does not depend on the order of arrival; for the end of a run, or a
@@ -104,9 +119,15 @@ class PlaneMapper {
     std::map<int, std::vector<int>> sightings() const;
     /// Keyframes that have no pose yet: at most 4096, then the oldest is dropped.
     std::size_t waiting() const;
-    std::size_t dropped() const { return dropped_; }
-    /// Regions left out so far.
-    std::size_t rejected() const { return rejected_; }
+    std::size_t dropped() const { return losses_.keyframes_unplaced; }
+    /// Regions and planes left out so far.
+    std::size_t rejected() const {
+        return losses_.regions_refused + losses_.regions_too_many + losses_.planes_refused;
+    }
+    const MapLosses& losses() const { return losses_; }
+    /// Keyframes that are kept, and those whose regions went over to others.
+    std::size_t keyframes() const { return keyframes_.size(); }
+    std::size_t replaced() const { return replaced_; }
     /// Keyframes whose regions were folded into the planes (MapOptions::fold_after).
     std::size_t folded() const { return folded_; }
     /// How often the whole map was rebuilt.
@@ -155,6 +176,8 @@ class PlaneMapper {
     void merge(const std::vector<std::size_t>& grown);
     int resolved(int plane_id) const;
     void fold();
+    void replace(const std::vector<Replacement>& gone);
+    std::vector<StoredKeyframe*> heirs_of(const StoredKeyframe& gone);
     void unite_fixed(const std::vector<int>& ids);
     void rebuild();
     void redraw(Surface& surface, const std::vector<DrawnRegion>& regions, const std::vector<View>& views);
@@ -167,6 +190,8 @@ class PlaneMapper {
 
     MapOptions options_;
     std::map<int, Pose> poses_;                ///< world_from_camera of all keyframes named so far
+    std::vector<KeyframePose> named_;          ///< by the last trajectory
+    int newest_id_ = -1;                       ///< the largest id of a keyframe so far
     std::map<int, StoredKeyframe> keyframes_;  ///< by id
     std::vector<Surface> fixed_;               ///< planes that no keyframe can move any more
     SurfaceSet set_;
@@ -176,7 +201,8 @@ class PlaneMapper {
     int folded_up_to_ = std::numeric_limits<int>::min();  ///< keyframes up to this id are folded
     PlaneMap map_;
     FlatPolygon polygon_;  ///< scratch
-    std::size_t rejected_ = 0, dropped_ = 0, folded_ = 0, rebuilds_ = 0;
+    MapLosses losses_;
+    std::size_t folded_ = 0, replaced_ = 0, rebuilds_ = 0;
     bool settled_ = true;
 };
 

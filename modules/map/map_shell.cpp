@@ -21,10 +21,8 @@ constexpr const char* kFile = "plane_map.lcmlog";
 
 MapShell::MapShell(Bus& bus, const MapShellOptions& options)
     : bus_(bus), output_(options.output), mapper_(options.map) {
-    if (!options.start.empty()) {
-        mapper_.start_from(read_plane_map(options.start));
-        count_rejected("planes to start from that are out of range");
-    }
+    if (!options.start.empty()) mapper_.start_from(read_plane_map(options.start));
+    tell_losses();
     if (!output_.empty()) {
         // A folder that cannot be written shows now, not after the run. An earlier map stays until there is
         // one.
@@ -42,18 +40,8 @@ void MapShell::on_keyframe(const RawMessage& message) {
     const keyframe_t received = decode<keyframe_t>(message.bytes);
     const Keyframe keyframe = from_message(received);
     if (!keyframe_guard_.admits(received.seq, received.utime, message.bytes)) return;
-    const std::size_t dropped = mapper_.dropped();
     mapper_.add(keyframe);
-    const auto more = static_cast<std::int64_t>(mapper_.dropped() - dropped);
-    status_.dropped(more);
-    status_.lost("keyframes whose pose never came", more);
-    count_rejected("regions that are not usable or out of range");
-}
-
-/// Counts what the mapper has rejected since the last time.
-void MapShell::count_rejected(const char* what) {
-    status_.lost(what, static_cast<std::int64_t>(mapper_.rejected() - rejected_));
-    rejected_ = mapper_.rejected();
+    tell_losses();
 }
 
 void MapShell::on_trajectory(const RawMessage& message) {
@@ -64,7 +52,27 @@ void MapShell::on_trajectory(const RawMessage& message) {
         const ModuleStatus::Work work(status_);
         mapper_.update(trajectory);
     }
+    tell_losses();
     publish();
+}
+
+/// What the mapper left out since the last time.
+void MapShell::tell_losses() {
+    const MapLosses now = mapper_.losses();
+    const auto tell = [&](const char* what, std::size_t MapLosses::*count, bool is_whole_input = false) {
+        const auto lost = static_cast<std::int64_t>(now.*count - told_.*count);
+        status_.lost(what, lost);
+        if (is_whole_input) status_.dropped(lost);
+    };
+    tell("regions that are none, or larger or farther than can be seen", &MapLosses::regions_refused);
+    tell("regions after the 256th of a keyframe", &MapLosses::regions_too_many);
+    tell("regions more than 100 km from the origin", &MapLosses::regions_too_far);
+    tell("planes of the map to start from that are out of range", &MapLosses::planes_refused);
+    tell("keyframe poses that are none or out of range", &MapLosses::poses_refused);
+    tell("keyframes without a pose", &MapLosses::keyframes_unplaced, true);
+    tell("keyframes that came again after they were folded", &MapLosses::keyframes_too_late, true);
+    tell("keyframes with an id out of order", &MapLosses::keyframes_far_ahead, true);
+    told_ = now;
 }
 
 void MapShell::publish() {

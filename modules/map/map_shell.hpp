@@ -37,7 +37,7 @@ class MapShell : public Shell {
   private:
     void on_keyframe(const RawMessage& message);
     void on_trajectory(const RawMessage& message);
-    void count_rejected(const char* what);
+    void tell_losses();
     void publish();
     void tell();
     void try_write();
@@ -49,7 +49,7 @@ class MapShell : public Shell {
     ModuleStatus status_{"map"};
     StreamGuard keyframe_guard_{channels::kKeyframe, "keyframes", status_};
     StreamGuard trajectory_guard_{channels::kTrajectory, "trajectories", status_, false};
-    std::size_t rejected_ = 0;  ///< of the mapper's, those counted
+    MapLosses told_;  ///< what the status knows
     std::int32_t seq_ = 0;
     std::int64_t published_us_ = 0;  ///< wall clock of the last map; 0: none yet
     std::int64_t last_write_us_ = 0;

@@ -42,6 +42,18 @@ void pack(const Outline& outline, const Pose& box_from_outline, float& unit,
     }
 }
 
+/// Moments in the camera frame, kept in the axes of the region's box.
+void set_moments(StoredRegion& region, const Moments& moments) {
+    const Eigen::Matrix3d r =
+        Eigen::Quaterniond(region.camera_from_box.cast<double>()).normalized().toRotationMatrix();
+    const Eigen::Matrix3d c = r.transpose() * moments.covariance() * r;
+    region.count = static_cast<float>(moments.count);
+    region.mean = moments.mean().cast<float>();
+    const std::array<double, 6> covariance{c(0, 0), c(1, 1), c(2, 2), c(0, 1), c(0, 2), c(1, 2)};
+    std::transform(covariance.begin(), covariance.end(), region.covariance.begin(),
+                   [](double value) { return static_cast<float>(value); });
+}
+
 }  // namespace
 
 Sight::Sight(const std::vector<PlanarRegion>& regions) {
@@ -120,14 +132,8 @@ StoredKeyframe stored(std::int64_t utime, const std::vector<PlanarRegion>& regio
     for (const PlanarRegion& region : regions) {
         StoredRegion& s = keyframe.regions.emplace_back();
         const Pose camera_from_box = level_box(region);
-        const Eigen::Matrix3d r = camera_from_box.linear();
-        const Eigen::Matrix3d c = r.transpose() * region.moments.covariance() * r;
-        s.count = static_cast<float>(region.moments.count);
-        s.mean = region.moments.mean().cast<float>();
-        const std::array<double, 6> covariance{c(0, 0), c(1, 1), c(2, 2), c(0, 1), c(0, 2), c(1, 2)};
-        std::transform(covariance.begin(), covariance.end(), s.covariance.begin(),
-                       [](double value) { return static_cast<float>(value); });
-        s.camera_from_box = Eigen::Quaterniond(r).normalized().cast<float>();
+        s.camera_from_box = Eigen::Quaterniond(camera_from_box.linear()).normalized().cast<float>();
+        set_moments(s, region.moments);
         s.center = camera_from_box.translation().cast<float>();
         s.half_extents = region.box.half_extents.head<2>().cast<float>();
         s.first = static_cast<std::uint32_t>(keyframe.vertices.size());
@@ -184,6 +190,50 @@ void outline_in(const Pose& a_from_box, const StoredRegion& region, const Stored
         i += 1 + 2 * static_cast<std::size_t>(owner.vertices[i]);
         polygon.ring_ends.push_back(polygon.vertices.size());
     }
+}
+
+void take_points(StoredRegion& region, const StoredRegion& other, const Pose& camera_from_other) {
+    Moments sum = PlacedRegion(Pose::Identity(), region).moments;
+    sum += PlacedRegion(camera_from_other, other).moments;
+    if (const PlaneFit fit = fit_plane(sum); fit.valid) {
+        // The box lies on the plane of all points; it hardly turns.
+        const Eigen::Quaterniond before =
+            Eigen::Quaterniond(region.camera_from_box.cast<double>()).normalized();
+        const Eigen::Matrix3d axes = plane_axes(fit.plane.normal, before * Eigen::Vector3d::UnitX());
+        region.camera_from_box = Eigen::Quaterniond(axes).normalized().cast<float>();
+        region.center = fit.plane.project(region.center.cast<double>()).cast<float>();
+    }
+    set_moments(region, sum);
+    region.keyframes += other.keyframes;
+}
+
+void take_region(StoredKeyframe& keyframe, const StoredRegion& other, const StoredKeyframe& owner,
+                 const Pose& camera_from_other) {
+    StoredRegion& region = keyframe.regions.emplace_back(other);
+    const PlacedRegion placed(camera_from_other, other);
+    region.camera_from_box =
+        Eigen::Quaterniond(placed.box.frame_from_box.linear()).normalized().cast<float>();
+    region.center = placed.box.frame_from_box.translation().cast<float>();
+    set_moments(region, placed.moments);
+    region.first = static_cast<std::uint32_t>(keyframe.vertices.size());
+    keyframe.vertices.insert(keyframe.vertices.end(), owner.vertices.begin() + other.first,
+                             owner.vertices.begin() + other.last);
+    region.last = static_cast<std::uint32_t>(keyframe.vertices.size());
+}
+
+bool contains(const FlatPolygon& polygon, const Eigen::Vector2d& p) {
+    bool inside = false;
+    std::size_t begin = 0;
+    for (const std::size_t end : polygon.ring_ends) {
+        for (std::size_t i = begin, j = end - 1; i < end; j = i++) {
+            const Eigen::Vector2d &a = polygon.vertices[i], &b = polygon.vertices[j];
+            if ((a.y() > p.y()) != (b.y() > p.y()) &&
+                p.x() < a.x() + (p.y() - a.y()) * (b.x() - a.x()) / (b.y() - a.y()))
+                inside = !inside;
+        }
+        begin = end;
+    }
+    return inside;
 }
 
 std::size_t memory_bytes(const StoredKeyframe& keyframe) {

@@ -12,7 +12,7 @@
 
 namespace planemap {
 
-/// A planar region in 92 bytes and 4 a vertex of its outline, camera frame. Single precision about the
+/// A planar region in 96 bytes and 4 a vertex of its outline, camera frame. Single precision about the
 /// region's own centre and axes: a micrometre at ten metres.
 struct StoredRegion {
     using Rotation = Eigen::Quaternion<float, Eigen::DontAlign>;
@@ -26,6 +26,7 @@ struct StoredRegion {
     float unit = 0;                                          ///< metres a step of the outline's vertices
     std::uint32_t first = 0, last = 0;  ///< of StoredKeyframe::vertices; last is one past the end
     int plane = -1;                     ///< id of the map plane it went to; -1: none
+    int keyframes = 1;                  ///< that saw it: its own, and those that handed theirs on to it
 };
 
 /// Which way regions lie, seen from the camera: a coarse image of them, to tell what was looked through.
@@ -86,6 +87,17 @@ struct PlacedRegion {
 
     PlacedRegion(const Pose& world_from_camera, const StoredRegion& region_camera);
 };
+
+/// Takes another region's points into a region that shows the same plane: their moments, not their outline.
+/// The region's plane is then the fit to all of them.
+void take_points(StoredRegion& region_camera, const StoredRegion& other, const Pose& camera_from_other);
+
+/// Appends a region of another keyframe as it is, its outline included. Sight does not know of it.
+void take_region(StoredKeyframe& keyframe, const StoredRegion& other, const StoredKeyframe& owner,
+                 const Pose& camera_from_other);
+
+/// True when the polygon holds the point (even-odd rule).
+bool contains(const FlatPolygon& polygon, const Eigen::Vector2d& p);
 
 /// Depth of the region's points in the camera, on average, metres.
 inline double mean_depth(const StoredRegion& region_camera) {

@@ -25,7 +25,8 @@ constexpr double kLongestGap = 1.5;      // seconds without a pose after which d
 constexpr double kReach = 0.3;           // metres and radians that a camera may always have moved
 constexpr int kBlindFrames = 3;          // without features, after which they are not looked for any harder
 constexpr int kBlindRetry = 8;           // every so many blind frames are looked at as others
-constexpr double kSureShare = 0.85;      // of the visible surface that must fit where nothing was predicted
+constexpr double kSameView = 1.1;  // residual of depth without motion over that with it, where nothing moved
+constexpr double kSureShare = 0.85;  // of the visible surface that must fit where nothing was predicted
 
 double seconds(std::int64_t microseconds) {
     return static_cast<double>(microseconds) * 1e-6;
@@ -122,7 +123,11 @@ class Odometry::State {
 
     void follow(const PreparedFrame& view, Located& located);
     void remember_flow(PreparedFrame& view, const Track& track);
+    bool has_moved(const Located& located) const;
+    bool sees_the_same(const PreparedFrame& view, const Located& located) const;
+    bool has_lost_overlap(const PreparedFrame& view, const Located& located) const;
     bool wants_keyframe(const PreparedFrame& view, const Located& located) const;
+    bool is_worth_it(const PreparedFrame& view, const Located& located, const LocalKeyframe& local) const;
     std::optional<std::size_t> other_keyframe(const PreparedFrame& view, const Located& located,
                                               Track& track) const;
     std::optional<Keyframe> change_keyframe(PreparedFrame& view, const Located& located);
@@ -420,17 +425,48 @@ void Odometry::State::remember_flow(PreparedFrame& view, const Track& track) {
     last_inlier_ = track.inlier;
 }
 
-bool Odometry::State::wants_keyframe(const PreparedFrame& view, const Located& located) const {
-    if (located.relocalised) return true;
+bool Odometry::State::has_moved(const Located& located) const {
     const Pose keyframe_from_camera = located.keyframe_from_camera();
-    if (keyframe_from_camera.translation().norm() > options_.max_translation_m ||
-        rotation_angle(keyframe_from_camera) > options_.max_rotation_rad)
-        return true;
+    return keyframe_from_camera.translation().norm() > options_.max_translation_m ||
+           rotation_angle(keyframe_from_camera) > options_.max_rotation_rad;
+}
+
+/// Whether the frame's depth is the keyframe's, reading by reading. It asks the readings, since a pose before
+/// a bare wall may drift while the camera stands.
+bool Odometry::State::sees_the_same(const PreparedFrame& view, const Located& located) const {
+    const auto match = [&](const Pose& camera_from_keyframe) {
+        return match_surface(current().surface, view.camera->color, view.samples, camera_from_keyframe,
+                             options_.surface_gate_m, 1);
+    };
+    const SurfaceMatch still = match(Pose::Identity());
+    const SurfaceMatch moved = match(located.track.alignment.camera_from_keyframe);
+    return still.matched >= moved.matched && still.residual < kSameView * moved.residual;
+}
+
+/// Whether too little of the keyframe is seen again, of its corners or, where depth alone leads, its surface.
+bool Odometry::State::has_lost_overlap(const PreparedFrame& view, const Located& located) const {
+    const std::size_t all = located.track.by_features ? current().points.size() : view.samples.size();
+    return located.track.inliers < options_.min_tracked_share * static_cast<double>(all);
+}
+
+bool Odometry::State::wants_keyframe(const PreparedFrame& view, const Located& located) const {
+    if (located.relocalised || has_moved(located)) return true;
     if (options_.method == "paper") return false;
-    if (!located.track.by_features)
-        return (view.gray && (blind_frames_ < kBlindFrames || blind_frames_ % kBlindRetry == 0)) ||
-               located.track.inliers < options_.min_tracked_share * static_cast<double>(view.samples.size());
-    return located.track.inliers < options_.min_tracked_share * static_cast<double>(current().points.size());
+    // Without features, new ones are looked for now and then.
+    const bool looks_for_features = !located.track.by_features && view.gray &&
+                                    (blind_frames_ < kBlindFrames || blind_frames_ % kBlindRetry == 0);
+    return looks_for_features || has_lost_overlap(view, located);
+}
+
+/// Whether a keyframe of this view would do what the present one does not. Where features do not hold, those
+/// of the same view would not hold either, unless they are many more, as when the light goes on.
+bool Odometry::State::is_worth_it(const PreparedFrame& view, const Located& located,
+                                  const LocalKeyframe& local) const {
+    if (located.relocalised) return true;
+    const auto corners = static_cast<int>(local.points.size());
+    if (located.track.by_features) return corners > located.track.inliers;
+    return has_moved(located) || has_lost_overlap(view, located) || !sees_the_same(view, located) ||
+           corners >= 2 * static_cast<int>(current().points.size()) + options_.min_inliers;
 }
 
 /// Another recent keyframe that sees more of this frame, with the frame tracked against it.
@@ -484,12 +520,9 @@ std::optional<Keyframe> Odometry::State::change_keyframe(PreparedFrame& view, co
         return std::nullopt;
     }
     LocalKeyframe local = make_local(view);
-    const bool better = located.relocalised ||
-                        local.points.size() > static_cast<std::size_t>(located.track.inliers) ||
-                        !located.track.by_features;
-    const bool usable = static_cast<int>(local.points.size()) >= options_.min_inliers ||
-                        local.surface.cells() >= kMinSurfaceCells;
-    if (!better || !usable) {
+    const bool is_usable = static_cast<int>(local.points.size()) >= options_.min_inliers ||
+                           local.surface.cells() >= kMinSurfaceCells;
+    if (!is_usable || !is_worth_it(view, located, local)) {
         remember_flow(view, located.track);
         return std::nullopt;
     }

@@ -150,7 +150,7 @@ TEST_F(MapShellTest, RegionsThatItCannotUseAreCounted) {
     keyframe.regions[1].box.half_extents.x() = 60;
     bus_.publish(channels::kKeyframe, to_message(keyframe, 0));
     bus_.drain();
-    EXPECT_EQ(shell.status().losses().at("regions that are not usable or out of range"), 1);
+    EXPECT_EQ(shell.status().losses().at("regions that are none, or larger or farther than can be seen"), 1);
 }
 
 TEST_F(MapShellTest, AnOutputThatCannotBeWrittenIsAnErrorAtOnce) {

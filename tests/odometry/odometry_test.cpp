@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
+#include <random>
 #include <stdexcept>
 
 #include "room.hpp"
@@ -130,6 +132,63 @@ TEST_F(Room, ABareWallIsDegenerateAndItsDistanceIsStillKnown) {
         EXPECT_NEAR(result.estimate.odom_from_camera.translation().z(), 0.005 * i, 0.005);
         EXPECT_GT(result.estimate.covariance(0, 0), 10 * result.estimate.covariance(2, 2));
     }
+}
+
+/// A wall of one shade two metres ahead, as a camera sees it: with noise in its image and its depth.
+RenderedFrame noisy_wall(const CameraInfo& camera, std::mt19937_64& random, double shade_sigma) {
+    std::normal_distribution<double> noise(0, 1);
+    RenderedFrame frame = render_room(camera, Pose::Identity(), false, {{{0, 0, -1}, 2}});
+    for (auto& pixel : frame.gray.pixels)
+        pixel = static_cast<std::uint8_t>(std::clamp(pixel + shade_sigma * noise(random), 0.0, 255.0));
+    for (auto& pixel : frame.depth.pixels)
+        pixel = static_cast<std::uint16_t>(pixel + 0.004 * camera.depth_units_per_metre * noise(random));
+    return frame;
+}
+
+/// All that it sees as one region, as the segmentation would give it.
+PlanarRegion whole_view(const CameraInfo& camera, const DepthImage& depth) {
+    PlanarRegion region;
+    for (int v = 2; v < depth.height; v += 4) {
+        for (int u = 2; u < depth.width; u += 4)
+            region.moments.add(camera.color.unproject(u, v, camera.metres(depth(u, v))));
+    }
+    const PlaneFit fit = fit_plane(region.moments);
+    region.plane = fit.plane;
+    region.rms = fit.rms;
+    region.box.frame_from_box.linear() = plane_axes(fit.plane.normal, {1, 0, 0});
+    region.box.frame_from_box.translation() = fit.plane.project(region.moments.mean());
+    region.box.half_extents = {1.2, 0.9, 0.01};
+    region.outline.rings = {{{-1.2, -0.9}, {1.2, -0.9}, {1.2, 0.9}, {-1.2, 0.9}}};
+    return region;
+}
+
+TEST_F(Room, StandingStillBeforeABareWallMakesNoKeyframes) {
+    for (const double shade_sigma : {0.0, 2.5, 8.0}) {  // levels; at 8, noise looks like corners
+        std::mt19937_64 random(1);
+        Odometry odometry{OdometryOptions{}};
+        int keyframes = 0;
+        for (int i = 0; i < 150; ++i) {
+            const RenderedFrame frame = noisy_wall(camera_, random, shade_sigma);
+            const std::int64_t utime = (i + 1) * kPeriod;
+            const std::vector<PlanarRegion> regions{whole_view(camera_, frame.depth)};
+            const OdometryResult result =
+                odometry.process({utime, utime, &frame.gray, &frame.depth, &camera_, regions});
+            EXPECT_NE(result.estimate.status, TrackingStatus::kLost) << "frame " << i;
+            keyframes += result.keyframe.has_value();
+        }
+        EXPECT_LE(keyframes, 2) << "noise of " << shade_sigma << " levels";
+    }
+}
+
+TEST_F(Room, LightThatGoesOnMakesAKeyframe) {
+    const RenderedFrame dark = render_room(camera_, Pose::Identity(), false);
+    const RenderedFrame lit = render_room(camera_, Pose::Identity(), true);
+    int keyframes = 0;
+    for (int i = 0; i < 30; ++i) keyframes += feed(dark, (i + 1) * kPeriod).keyframe.has_value();
+    EXPECT_EQ(keyframes, 1);
+    for (int i = 30; i < 60; ++i) keyframes += feed(lit, (i + 1) * kPeriod).keyframe.has_value();
+    EXPECT_EQ(keyframes, 2) << "there are corners to follow now";
+    EXPECT_EQ(feed(lit, 61 * kPeriod).estimate.status, TrackingStatus::kTracked);
 }
 
 TEST_F(Room, BlackFramesAreLostAndTheViewIsFoundAgain) {

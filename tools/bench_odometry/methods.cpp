@@ -21,20 +21,16 @@ PipelineOptions options_of(const std::string& method, PipelineOptions options) {
 
 /// The graph's closures, at the moments that its keyframes' poses are of.
 std::vector<Closure> closures_of(Pipeline& pipeline) {
-    const auto pose_utime = [&](int id) {
-        const std::vector<KeyframePose>& keyframes = pipeline.graph()->graph().trajectory().keyframes;
-        const auto keyframe =
-            std::find_if(keyframes.begin(), keyframes.end(), [&](const auto& k) { return k.id == id; });
-        if (keyframe == keyframes.end())
-            throw std::logic_error("loop closure with unknown keyframe " + std::to_string(id));
+    const auto pose_utime = [&](std::int64_t utime) {
         const auto& estimates = pipeline.estimates();
-        const auto estimate = std::find_if(estimates.begin(), estimates.end(),
-                                           [&](const auto& e) { return e.utime == keyframe->utime; });
-        return estimate == estimates.end() ? keyframe->utime : estimate->pose_utime;
+        const auto estimate =
+            std::find_if(estimates.begin(), estimates.end(), [&](const auto& e) { return e.utime == utime; });
+        return estimate == estimates.end() ? utime : estimate->pose_utime;
     };
     std::vector<Closure> closures;
     for (const LoopClosure& closure : pipeline.graph()->graph().loop_closures())
-        closures.push_back({pose_utime(closure.from_id), pose_utime(closure.to_id), closure.from_from_to});
+        closures.push_back(
+            {pose_utime(closure.from_utime), pose_utime(closure.to_utime), closure.from_from_to});
     return closures;
 }
 

@@ -80,9 +80,8 @@ std::string map(const RunOptions& options, Input& input, Pipeline& pipeline, Res
 }
 
 /// What is wrong with the results, a line each; the last says what became of them.
-std::vector<std::string> problems_of(const std::string& input_name, const Input& input,
-                                     Pipeline& pipeline, const ResultFolder& folder,
-                                     const Outputs& outputs) {
+std::vector<std::string> problems_of(const std::string& input_name, const Input& input, Pipeline& pipeline,
+                                     const ResultFolder& folder, const Outputs& outputs) {
     std::vector<std::string> lines = outputs.failures;
     const std::string earlier =
         outputs.kept_earlier ? "; " + folder.path().string() + " keeps the results of an earlier run" : "";

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/replacement.hpp"
 #include "messages/channels.hpp"
 #include "messages/convert.hpp"
 #include "messages/decode.hpp"
@@ -21,9 +22,18 @@ Pipeline::Pipeline(Bus& bus, const PipelineOptions& options)
     }
     if ((graph_ || given_poses_) && options.with_map) map_ = std::make_unique<MapShell>(bus, options.map);
     if (options.with_octomap) octomap_ = std::make_unique<OctomapShell>(bus, decoder_, options.octomap);
-    bus_.subscribe(channels::kOdometry, [this](const RawMessage& message) {
+    bus_.subscribe(channels::kOdometry, [this, keep = options.keep_estimates](const RawMessage& message) {
+        if (!keep) estimates_.clear();
         estimates_.push_back(from_message(decode<odometry_t>(message.bytes)));
     });
+    if (graph_ && options.keep_estimates) {
+        bus_.subscribe(channels::kTrajectory, [this](const RawMessage& message) {
+            const KeyframeTrajectory now = from_message(decode<trajectory_t>(message.bytes));
+            for (const Replacement& replacement : replacements(named_, now.keyframes))
+                replaced_[replacement.id] = replacement;
+            named_ = now.keyframes;
+        });
+    }
 }
 
 void Pipeline::finish() {
@@ -41,6 +51,21 @@ const KeyframeTrajectory& Pipeline::keyframes() const {
     return given_poses_ ? given_poses_->keyframes() : graph_->graph().trajectory();
 }
 
+/// World pose of a keyframe, also of one that the graph replaced.
+std::optional<Pose> Pipeline::keyframe_pose(int id) const {
+    Pose keyframe_from_asked = Pose::Identity();
+    for (auto gone = replaced_.find(id); gone != replaced_.end(); gone = replaced_.find(id)) {
+        keyframe_from_asked = gone->second.by_from_id * keyframe_from_asked;
+        id = gone->second.by;
+    }
+    const std::vector<KeyframePose>& keyframes = graph_->graph().trajectory().keyframes;
+    const auto keyframe =
+        std::lower_bound(keyframes.begin(), keyframes.end(), id,
+                         [](const KeyframePose& pose, int wanted) { return pose.id < wanted; });
+    if (keyframe == keyframes.end() || keyframe->id != id) return std::nullopt;
+    return keyframe->world_from_camera * keyframe_from_asked;
+}
+
 Trajectory Pipeline::trajectory() const {
     Trajectory trajectory;
     if (given_poses_) {
@@ -50,16 +75,12 @@ Trajectory Pipeline::trajectory() const {
         }
         return trajectory;
     }
-    const KeyframeTrajectory keyframes = graph_ ? graph_->graph().trajectory() : KeyframeTrajectory();
+    const Pose world_from_odom = graph_ ? graph_->graph().trajectory().world_from_odom : Pose::Identity();
     for (const OdometryEstimate& estimate : estimates_) {
         if (estimate.status == TrackingStatus::kLost) continue;
-        const auto keyframe =
-            std::lower_bound(keyframes.keyframes.begin(), keyframes.keyframes.end(), estimate.keyframe_id,
-                             [](const KeyframePose& pose, int id) { return pose.id < id; });
-        const bool known = keyframe != keyframes.keyframes.end() && keyframe->id == estimate.keyframe_id;
-        trajectory.push_back(
-            {estimate.pose_utime, known ? keyframe->world_from_camera * estimate.keyframe_from_camera
-                                        : keyframes.world_from_odom * estimate.odom_from_camera});
+        const std::optional<Pose> keyframe = graph_ ? keyframe_pose(estimate.keyframe_id) : std::nullopt;
+        trajectory.push_back({estimate.pose_utime, keyframe ? *keyframe * estimate.keyframe_from_camera
+                                                            : world_from_odom * estimate.odom_from_camera});
     }
     std::stable_sort(trajectory.begin(), trajectory.end(),
                      [](const auto& a, const auto& b) { return a.utime < b.utime; });

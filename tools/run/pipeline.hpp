@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/keyframe.hpp"
+#include "core/replacement.hpp"
 #include "core/trajectory.hpp"
 #include "graph/graph_shell.hpp"
 #include "map/map_shell.hpp"
@@ -29,6 +31,7 @@ struct PipelineOptions {
     std::optional<Trajectory> poses;  ///< instead of the graph's
     bool with_map = true;
     bool with_octomap = true;
+    bool keep_estimates = true;        ///< of all frames, for trajectory(); without: of the newest only
     std::optional<CameraInfo> camera;  ///< instead of what the bus says
 };
 
@@ -67,6 +70,8 @@ class Pipeline {
     OctomapShell* octomap() { return octomap_.get(); }
 
   private:
+    std::optional<Pose> keyframe_pose(int id) const;
+
     Bus& bus_;
     std::shared_ptr<FrameDecoder> decoder_;
     SegmentationShell segmentation_;
@@ -76,6 +81,8 @@ class Pipeline {
     std::unique_ptr<MapShell> map_;
     std::unique_ptr<OctomapShell> octomap_;
     std::vector<OdometryEstimate> estimates_;
+    std::vector<KeyframePose> named_;      ///< by the graph's newest trajectory
+    std::map<int, Replacement> replaced_;  ///< keyframes that it no longer names
 };
 
 }  // namespace planemap

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "map/hand_over.hpp"
+
+#include <algorithm>
+
+namespace planemap {
+
+namespace {
+
+constexpr int kSamples = 12;           // a side of the grid that tells whether a region is covered
+constexpr double kCoveredShare = 0.9;  // of its samples; outlines of one thing differ at the edges
+
+/// Where to look for what a region covers: points inside it, in its box's x and y.
+std::vector<Eigen::Vector2d> samples_of(const StoredRegion& region, const StoredKeyframe& owner) {
+    FlatPolygon polygon;
+    outline_in(Pose::Identity(), region, owner, polygon);
+    std::vector<Eigen::Vector2d> samples;
+    for (int i = 0; i < kSamples * kSamples; ++i) {
+        const Eigen::Vector2d share((i % kSamples + 0.5) / kSamples, (i / kSamples + 0.5) / kSamples);
+        const Eigen::Vector2d p =
+            region.half_extents.cast<double>().cwiseProduct(2 * share - Eigen::Vector2d::Ones());
+        if (contains(polygon, p)) samples.push_back(p);
+    }
+    return samples;
+}
+
+/// Takes away the samples that an heir's region covers.
+void take_covered(std::vector<Eigen::Vector2d>& samples, const Pose& box_from_heir_box,
+                  const StoredRegion& region, const StoredKeyframe& heir) {
+    FlatPolygon polygon;
+    outline_in(box_from_heir_box, region, heir, polygon);
+    std::erase_if(samples, [&](const Eigen::Vector2d& p) { return contains(polygon, p); });
+}
+
+}  // namespace
+
+void hand_over(const StoredKeyframe& gone, const std::vector<StoredKeyframe*>& heirs) {
+    for (const StoredRegion& region : gone.regions) {
+        if (region.plane < 0) continue;  // too far out to be in the map
+        const Pose world_from_box = PlacedRegion(*gone.world_from_camera, region).box.frame_from_box;
+        std::vector<Eigen::Vector2d> samples = samples_of(region, gone);
+        const auto all = static_cast<double>(samples.size());
+        StoredRegion* nearest = nullptr;
+        StoredKeyframe* owner = nullptr;
+        for (StoredKeyframe* heir : heirs) {
+            for (StoredRegion& other : heir->regions) {
+                if (other.plane != region.plane) continue;
+                if (nearest == nullptr) {
+                    nearest = &other;
+                    owner = heir;
+                }
+                const Pose world_from_other =
+                    PlacedRegion(*heir->world_from_camera, other).box.frame_from_box;
+                take_covered(samples, world_from_box.inverse(Eigen::Isometry) * world_from_other, other,
+                             *heir);
+            }
+        }
+        const bool is_covered =
+            nearest != nullptr && static_cast<double>(samples.size()) <= (1 - kCoveredShare) * all;
+        StoredKeyframe& heir = is_covered ? *owner : *heirs.front();
+        const Pose heir_from_gone =
+            heir.world_from_camera->inverse(Eigen::Isometry) * *gone.world_from_camera;
+        if (is_covered) {
+            take_points(*nearest, region, heir_from_gone);
+        } else {
+            take_region(heir, region, gone, heir_from_gone);
+        }
+    }
+}
+
+}  // namespace planemap

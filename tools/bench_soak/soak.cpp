@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench_soak/soak.hpp"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <bot_core/images_t.hpp>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <stdexcept>
+
+#include "bench_map/growth.hpp"
+#include "messages/channels.hpp"
+#include "messages/convert.hpp"
+#include "messages/decode.hpp"
+#include "messages/log.hpp"
+#include "sensor/simulator/simulated_source.hpp"
+#include "simulate/recording.hpp"
+
+namespace planemap::bench_soak {
+
+namespace {
+
+constexpr double kHalfHour_s = 1800;
+constexpr std::int64_t kStartUtime = 1500000000000000;
+
+double cpu_ms() {
+    rusage usage = {};
+    getrusage(RUSAGE_SELF, &usage);
+    const auto ms = [](const timeval& t) {
+        return 1e3 * static_cast<double>(t.tv_sec) + 1e-3 * static_cast<double>(t.tv_usec);
+    };
+    return ms(usage.ru_utime) + ms(usage.ru_stime);
+}
+
+/// Memory of the process that is in use now; its peak would hide what comes back.
+double rss_mb() {
+    std::ifstream statm("/proc/self/statm");
+    double size = 0, resident = 0;
+    if (!(statm >> size >> resident)) throw std::runtime_error("/proc/self/statm: cannot be read");
+    return resident * static_cast<double>(::sysconf(_SC_PAGESIZE)) / 1e6;
+}
+
+/// The events of a round, over and over, with stamps that go on.
+class Feed {
+  public:
+    Feed(const Round& round, double period_s)
+        : round_(round), period_us_(std::llround(1e6 * period_s)), log_(round.log) {}
+
+    /// Publishes up to and including the next frame; returns its index in the round.
+    std::size_t next(Bus& bus) {
+        LogEvent event;
+        for (;;) {
+            if (!log_.next(event)) {
+                log_ = LogReader(round_.log);
+                at_ = 0;
+                continue;
+            }
+            if (event.channel == channels::kFrame) break;
+            bus.publish_bytes(event.channel, event.bytes);
+        }
+        auto images = decode<bot_core::images_t>(event.bytes);
+        const std::int64_t later = kStartUtime + frames_++ * period_us_ - images.utime;
+        images.utime += later;
+        for (bot_core::image_t& image : images.images) image.utime += later;
+        bus.publish(channels::kFrame, images);
+        return at_++;
+    }
+
+  private:
+    const Round& round_;
+    std::int64_t period_us_;
+    LogReader log_;
+    std::int64_t frames_ = 0;
+    std::size_t at_ = 0;
+};
+
+/// Counts what happens between two points.
+class Observer {
+  public:
+    Observer(const Round& round, Pipeline& pipeline) : round_(round), pipeline_(pipeline) {}
+
+    void keyframe() { ++keyframes_; }
+    void see(std::size_t frame) {
+        ++frames_;
+        const OdometryEstimate* estimate = pipeline_.latest();
+        if (estimate == nullptr || estimate->status == TrackingStatus::kLost) {
+            ++lost_;
+            return;
+        }
+        const KeyframeTrajectory& keyframes = pipeline_.keyframes();
+        const Pose world_from_camera = keyframes.world_from_odom * estimate->odom_from_camera;
+        // The world is the first camera's frame.
+        const Pose truth = round_.world_from_camera.front().inverse() * round_.world_from_camera.at(frame);
+        off_m_ = std::max(off_m_, (world_from_camera.translation() - truth.translation()).norm());
+    }
+    SoakPoint point() {
+        const PoseGraph& graph = pipeline_.graph()->graph();
+        const PlaneMapper& mapper = pipeline_.map().mapper();
+        SoakPoint point;
+        point.frames = frames_;
+        point.lost = lost_;
+        point.keyframes_made = keyframes_;
+        point.keyframes_graph = graph.trajectory().keyframes.size();
+        point.keyframes_map = mapper.keyframes();
+        point.loop_closures = graph.trajectory().loop_closures;
+        point.planes = mapper.map().planes.size();
+        point.rss_mb = rss_mb();
+        point.graph_mb = static_cast<double>(graph.memory_bytes()) / 1e6;
+        point.map_mb = static_cast<double>(mapper.working_bytes() + mapper.memory_bytes()) / 1e6;
+        const double now_ms = cpu_ms();
+        point.cpu_ms = (now_ms - last_ms_) / static_cast<double>(std::max<std::int64_t>(frames_ - last_, 1));
+        point.off_m = off_m_;
+        last_ms_ = now_ms;
+        last_ = frames_;
+        off_m_ = 0;
+        return point;
+    }
+
+  private:
+    const Round& round_;
+    Pipeline& pipeline_;
+    std::int64_t frames_ = 0, lost_ = 0, keyframes_ = 0, last_ = 0;
+    double last_ms_ = cpu_ms(), off_m_ = 0;
+};
+
+}  // namespace
+
+Round render_round(const std::string& simulator_name, const std::filesystem::path& folder) {
+    sim::SimulatorOptions options = sim::parse_simulator_name(simulator_name);
+    options.frames = static_cast<int>(bench_map::frames_a_round(simulator_name));
+    auto source = std::make_unique<sim::SimulatedSource>(options);
+    Round round{folder / "round.lcmlog", {}};
+    for (int i = 0; i < options.frames; ++i)
+        round.world_from_camera.push_back(
+            source->world_from_color(source->color_utime(static_cast<std::size_t>(i))));
+    std::filesystem::create_directories(folder);
+    Bus bus("memq://");
+    SensorShellOptions encoding;
+    encoding.speed = 0;
+    SensorShell sensor(bus, std::move(source), encoding);
+    record(sensor, bus, 0, round.log, [](std::int64_t) {});
+    return round;
+}
+
+std::vector<SoakPoint> soak(const Round& round, const SoakOptions& options,
+                            const std::function<bool(const SoakPoint&)>& on_point) {
+    if (options.frames < 1 || options.every < 1 || !(options.period_s >= 0.001 && options.period_s <= 3600))
+        throw std::invalid_argument("frames and every must be at least 1, the period 0.001 to 3600 s");
+    PipelineOptions pipeline_options = options.pipeline;
+    pipeline_options.keep_estimates = false;
+    Bus bus("memq://");
+    Pipeline pipeline(bus, pipeline_options);
+    Observer observer(round, pipeline);
+    bus.subscribe(channels::kKeyframe, [&](const RawMessage&) { observer.keyframe(); });
+    Feed feed(round, options.period_s);
+    std::vector<SoakPoint> points;
+    for (int frames = 1; frames <= options.frames; ++frames) {
+        const std::size_t frame = feed.next(bus);
+        pipeline.settle();
+        observer.see(frame);
+        if (frames % options.every != 0 && frames != options.frames) continue;
+        points.push_back(observer.point());
+        if (!on_point(points.back())) break;
+    }
+    return points;
+}
+
+std::optional<double> growth(const std::vector<SoakPoint>& points, double period_s) {
+    const auto half_hour = std::find_if(points.begin(), points.end(), [&](const SoakPoint& point) {
+        return static_cast<double>(point.frames) * period_s >= kHalfHour_s;
+    });
+    if (half_hour == points.end() || half_hour + 1 == points.end()) return std::nullopt;
+    return points.back().rss_mb / half_hour->rss_mb - 1;
+}
+
+std::string table_head() {
+    return "  frames   lost | keyframes    graph    map  closures planes |  RSS MB graph MB  map MB | CPU ms "
+           "  off m\n";
+}
+
+std::string table_line(const SoakPoint& p) {
+    char line[160];
+    std::snprintf(line, sizeof(line),
+                  "%8lld %6lld | %9lld %8zu %6zu %9d %6zu | %7.1f %8.2f %7.2f | %6.2f %7.4f\n",
+                  static_cast<long long>(p.frames), static_cast<long long>(p.lost),
+                  static_cast<long long>(p.keyframes_made), p.keyframes_graph, p.keyframes_map,
+                  p.loop_closures, p.planes, p.rss_mb, p.graph_mb, p.map_mb, p.cpu_ms, p.off_m);
+    return line;
+}
+
+}  // namespace planemap::bench_soak
