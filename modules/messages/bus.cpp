@@ -8,6 +8,7 @@
 #include <sys/socket.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <cstdlib>
@@ -15,6 +16,8 @@
 #include <fstream>
 #include <stdexcept>
 #include <thread>
+
+#include "messages/interrupt.hpp"
 
 namespace planemap {
 
@@ -68,7 +71,27 @@ void bound_waiting(int socket) {
     ::setsockopt(socket, SOL_SOCKET, SO_SNDTIMEO, &send, sizeof(send));
 }
 
+/// The tcpq socket on which liblcm sends or receives just now; -1: none.
+std::atomic<int> waiting_socket{-1};
+static_assert(std::atomic<int>::is_always_lock_free);
+
+class Waiting {
+  public:
+    explicit Waiting(int socket) : before_(waiting_socket.exchange(socket)) {}
+    ~Waiting() { waiting_socket = before_; }
+    Waiting(const Waiting&) = delete;
+    Waiting& operator=(const Waiting&) = delete;
+
+  private:
+    int before_;  ///< handlers publish while a message is handled
+};
+
 }  // namespace
+
+void interrupt_waiting() {
+    const int socket = waiting_socket.load();
+    if (socket >= 0) ::shutdown(socket, SHUT_RDWR);
+}
 
 struct Bus::Subscriber {
     Bus* bus;
@@ -176,10 +199,12 @@ void Bus::publish_bytes(const std::string& channel, std::span<const std::uint8_t
         return;
     }
     // Of a message in parts, liblcm passes no error on but the last one's errno.
+    const bool server = endpoint_.is_network() && !endpoint_.is_multicast();
+    const Waiting waiting(server ? lcm_->getFileno() : -1);
     errno = 0;
     const int result = lcm_->publish(channel, bytes.data(), static_cast<unsigned>(bytes.size()));
-    const bool network = endpoint_.is_multicast() && is_network_error(errno);
-    const bool server_gone = result != 0 && endpoint_.is_network() && !endpoint_.is_multicast();
+    const bool network = !server && endpoint_.is_network() && is_network_error(errno);
+    const bool server_gone = server && result != 0;
     if (result == 0 && !network) return;
     ++unsent_;
     if (network || server_gone) {
@@ -208,6 +233,7 @@ bool Bus::attach(Subscriber& subscriber) {
 }
 
 void Bus::dispatch(const lcm::ReceiveBuffer* buffer, const std::string& channel, Subscriber* subscriber) {
+    const Waiting working(-1);
     try {
         const auto* bytes = static_cast<const std::uint8_t*>(buffer->data);
         subscriber->handler({channel, {bytes, buffer->data_size}, buffer->recv_utime});
@@ -236,7 +262,11 @@ bool Bus::handle(int timeout_ms) {
     const int waiting = ready.fd < 0 ? -1 : ::poll(&ready, 1, timeout_ms);
     if (waiting == 0 || (waiting < 0 && errno == EINTR)) return false;
     ++handled_;
-    if (waiting > 0 && lcm_->handle() == 0) return true;
+    {
+        const bool server = endpoint_.is_network() && !endpoint_.is_multicast();
+        const Waiting receiving(server ? ready.fd : -1);
+        if (waiting > 0 && lcm_->handle() == 0) return true;
+    }
     if (endpoint_.is_log()) {
         spdlog::info("LCM URL '{}': the log is read to its end, or to a record that liblcm cannot read",
                      url());

@@ -3,12 +3,15 @@
 
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
 #include <csignal>
 #include <cstdio>
 #include <exception>
+
+#include "messages/interrupt.hpp"
 
 namespace planemap {
 
@@ -22,6 +25,13 @@ void on_signal(int signal) {
         std::signal(signal, SIG_DFL);
         std::raise(signal);
     }
+    ::alarm(1);
+}
+
+/// A second after the signal, and every second from then on, nothing waits for a server any more.
+void on_alarm(int) {
+    interrupt_waiting();
+    ::alarm(1);
 }
 
 constexpr const char* kLogPattern = "%n: %^%l%$: %v";
@@ -80,6 +90,9 @@ void catch_stop_signals() {
     sigemptyset(&action.sa_mask);
     sigaction(SIGINT, &action, nullptr);
     sigaction(SIGTERM, &action, nullptr);
+    action.sa_handler = on_alarm;
+    action.sa_flags = SA_RESTART;  // writing files goes on
+    sigaction(SIGALRM, &action, nullptr);
     std::signal(SIGPIPE, SIG_IGN);
     std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit is a write that fails, not the end
 }

@@ -6,6 +6,7 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <chrono>
 #include <filesystem>
 #include <sstream>
@@ -13,6 +14,7 @@
 
 #include "messages/channels.hpp"
 #include "messages/decode.hpp"
+#include "messages/interrupt.hpp"
 #include "messages/log.hpp"
 #include "messages/module_status.hpp"
 #include "messages/sample_messages.hpp"
@@ -164,6 +166,29 @@ TEST(Bus, AServerThatVanishesWhileASenderDoesNotListenIsNoticed) {
     EXPECT_FALSE(bus.connected());
     EXPECT_GT(bus.unsent(), 0);
     EXPECT_FALSE(bus.handle(0));
+}
+
+/// A server that takes no more holds a sender up, so that nothing is lost, but not for longer than is wanted.
+TEST(Bus, WaitingForAServerCanBeInterrupted) {
+    test::TcpqServer server;
+    Bus bus(server.url());
+    ASSERT_TRUE(bus.connected());
+    server.take_no_more();
+    std::atomic<bool> done{false};
+    std::thread interrupter([&] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(300));
+        while (!done) {
+            interrupt_waiting();
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        }
+    });
+    const auto start = std::chrono::steady_clock::now();
+    for (int i = 0; i < 100 && bus.connected(); ++i)
+        bus.publish_bytes("A", std::vector<std::uint8_t>(1 << 20));
+    done = true;
+    interrupter.join();
+    EXPECT_FALSE(bus.connected());
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
 }
 
 TEST(Bus, WhoeverListensAndIsNoServerDoesNotHoldABusUp) {

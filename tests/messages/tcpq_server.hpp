@@ -12,6 +12,7 @@
 
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <string>
 #include <thread>
@@ -49,6 +50,8 @@ class TcpqServer {
 
     std::uint16_t port() const { return port_; }
     std::string url() const { return "tcpq://127.0.0.1:" + std::to_string(port_); }
+    /// Leaves what comes from now on in the kernel, as a server does that hangs.
+    void take_no_more() { hung_ = true; }
     int subscriptions() const { return subscriptions_; }  ///< that clients asked for so far
 
   private:
@@ -60,6 +63,10 @@ class TcpqServer {
 
     void serve() {
         while (!stop_) {
+            if (hung_) {
+                std::this_thread::sleep_for(std::chrono::milliseconds(5));
+                continue;
+            }
             std::vector<pollfd> polls{{listener_, POLLIN, 0}};
             for (const Client& client : clients_) polls.push_back({client.fd, POLLIN, 0});
             ::poll(polls.data(), polls.size(), 10);
@@ -117,7 +124,7 @@ class TcpqServer {
     bool greets_;
     std::uint16_t port_ = 0;
     std::vector<Client> clients_;
-    std::atomic<bool> stop_{false};
+    std::atomic<bool> stop_{false}, hung_{false};
     std::atomic<int> subscriptions_{0};
     std::thread thread_;
 };
