@@ -18,15 +18,22 @@ class Admission : public testing::Test {
     StreamGuard guard_{"PLANEMAP_KEYFRAME", "keyframes", status_};
 };
 
-TEST_F(Admission, ARepeatedMessageIsNeitherUsedNorLost) {
-    EXPECT_TRUE(admits(0));
-    EXPECT_TRUE(admits(1));
-    EXPECT_FALSE(admits(1));
-    EXPECT_FALSE(admits(1));
-    EXPECT_TRUE(admits(2));
-    EXPECT_EQ(status_.received_count(), 3);
+TEST_F(Admission, ARepeatedMessageIsNotUsedAndNoLossBesideTheMainStream) {
+    StreamGuard trajectories("PLANEMAP_TRAJECTORY", "trajectories", status_, false);
+    const std::vector<std::uint8_t> bytes{1}, more{2};
+    EXPECT_TRUE(trajectories.admits(0, std::nullopt, bytes));
+    EXPECT_FALSE(trajectories.admits(0, std::nullopt, bytes));
+    EXPECT_FALSE(trajectories.admits(0, std::nullopt, bytes));
+    EXPECT_TRUE(trajectories.admits(1, std::nullopt, more));
+    EXPECT_EQ(status_.received_count(), 0) << "not the main stream";
     EXPECT_EQ(status_.dropped_count(), 0);
     EXPECT_TRUE(status_.losses().empty());
+    // Of the main stream nobody sends a message again but an old log.
+    EXPECT_TRUE(admits(0));
+    EXPECT_FALSE(admits(0));
+    EXPECT_TRUE(admits(1));
+    EXPECT_EQ(status_.received_count(), 2);
+    EXPECT_EQ(status_.losses().at("keyframes that came twice"), 1);
 }
 
 TEST_F(Admission, WhatAnotherSenderSaysIsCountedAndNamed) {
