@@ -45,9 +45,9 @@ Keyframe from_message(const keyframe_t& message);
 trajectory_t to_message(const KeyframeTrajectory& trajectory, std::int32_t seq);
 KeyframeTrajectory from_message(const trajectory_t& message);
 
-/// The map in at most 96 bytes a plane and 4 bytes an outline vertex: the very values that PlaneMap holds, so
-/// nothing is lost but the ends of lines and points, which are rounded to single precision along their
-/// planes.
+/// The map in 69 bytes a plane, 2 an outline ring and 4 an outline vertex: the very values that PlaneMap
+/// holds, so nothing is lost but the ends of lines and points, which are rounded to single precision along
+/// their planes.
 plane_map_t to_message(const PlaneMap& map, std::int32_t seq);
 PlaneMap from_message(const plane_map_t& message);
 
