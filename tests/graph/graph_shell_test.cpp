@@ -29,7 +29,31 @@ TEST_F(GraphShellTest, PublishesTheTrajectoryAmongCorruptMessages) {
     const KeyframeTrajectory last = from_message(trajectories->back());
     ASSERT_EQ(last.keyframes.size(), 3u);
     EXPECT_NEAR(last.keyframes[2].world_from_camera.translation().x(), 0.2, 1e-9);
-    EXPECT_EQ(shell.status().decode_error_count(), 3 * kCorrupt + 1);
+    EXPECT_EQ(shell.status().decode_error_count(), 3 * kCorrupt);
+    EXPECT_EQ(shell.status().dropped_count(), 1);
+    EXPECT_EQ(shell.status().losses().at("keyframes with an id out of order"), 1);
+}
+
+TEST_F(GraphShellTest, WhatItLeavesOutIsCounted) {
+    GraphShell shell(bus_, {});
+    const auto trajectories = collect<trajectory_t>(channels::kTrajectory);
+    Keyframe keyframe;
+    keyframe.covariance = Matrix6d::Identity() * 1e-4;
+    keyframe.features.resize(5);  // all at the camera's centre
+    const auto publish = [&](int id) {
+        keyframe.id = id;
+        keyframe.utime = keyframe.pose_utime = 1000 * std::int64_t{id};
+        bus_.publish(channels::kKeyframe, to_message(keyframe, 0));
+        bus_.drain();
+    };
+    for (const int id : {3, 4, 2147483647, 5, 0, 1, 2, 6}) publish(id);
+    EXPECT_EQ(trajectories->size(), 4u) << "3 to 6; nothing stops at the others";
+    EXPECT_EQ(shell.status().losses().at("keyframes with an id out of order"), 4);
+    EXPECT_EQ(shell.status().dropped_count(), 4);
+    EXPECT_EQ(shell.status().losses().at(
+                  "features without a point before the camera, or beyond the most of a keyframe"),
+              4 * 5);
+    EXPECT_EQ(shell.status().decode_error_count(), 0);
 }
 
 TEST_F(GraphShellTest, TheBackgroundComesToTheSameTrajectory) {

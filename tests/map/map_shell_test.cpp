@@ -76,6 +76,25 @@ TEST_F(MapShellTest, StartsFromAMapAndKeepsAnEarlierOneUntilItHasOne) {
     EXPECT_EQ(shell.mapper().map().planes.size(), 2u);
 }
 
+TEST_F(MapShellTest, WhatItLeavesOutIsCounted) {
+    MapShell shell(bus_, {});
+    Keyframe keyframe = test::sample_keyframe();
+    keyframe.regions[0].box.half_extents.x() = 300;  // nobody sees that far
+    bus_.publish(channels::kKeyframe, to_message(keyframe, 0));
+    keyframe.id = 2147483647;
+    bus_.publish(channels::kKeyframe, to_message(keyframe, 1));
+    KeyframeTrajectory far = trajectory();
+    far.keyframes[0].world_from_camera.translation().x() = 2e5;
+    bus_.publish(channels::kTrajectory, to_message(far, 0));
+    bus_.drain();
+    const auto& losses = shell.status().losses();
+    EXPECT_EQ(losses.at("regions that are none, or larger or farther than can be seen"), 1);
+    EXPECT_EQ(losses.at("keyframes with an id out of order"), 1);
+    EXPECT_EQ(losses.at("keyframe poses that are none or out of range"), 1);
+    EXPECT_EQ(losses.size(), 3u);
+    EXPECT_EQ(shell.status().dropped_count(), 1);
+}
+
 TEST_F(MapShellTest, AnOutputThatCannotBeWrittenIsAnErrorAtOnce) {
     write_file(folder_.string() + ".file", "x");
     MapShellOptions options;
