@@ -77,6 +77,29 @@ TEST_F(GraphShellTest, AnotherOdometrysKeyframesAreCountedAndNotUsed) {
               10);
 }
 
+TEST_F(GraphShellTest, WhatItLeavesOutIsCounted) {
+    GraphShell shell(bus_, {});
+    const auto trajectories = collect<trajectory_t>(channels::kTrajectory);
+    Keyframe keyframe;
+    keyframe.covariance = Matrix6d::Identity() * 1e-4;
+    keyframe.features.resize(5);  // all at the camera's centre
+    std::int32_t seq = 0;
+    const auto publish = [&](int id) {
+        keyframe.id = id;
+        keyframe.utime = keyframe.pose_utime += 1000000;
+        bus_.publish(channels::kKeyframe, to_message(keyframe, seq++));
+        bus_.drain();
+    };
+    for (const int id : {3, 4, 2147483647, 5, 0, 1, 2, 6}) publish(id);
+    EXPECT_EQ(trajectories->size(), 4u) << "3 to 6; nothing stops at the others";
+    EXPECT_EQ(shell.status().losses().at("keyframes with an id out of order"), 4);
+    EXPECT_EQ(shell.status().dropped_count(), 4);
+    EXPECT_EQ(shell.status().losses().at(
+                  "features without a point before the camera, or beyond the most of a keyframe"),
+              4 * 5);
+    EXPECT_EQ(shell.status().decode_error_count(), 0);
+}
+
 TEST_F(GraphShellTest, TheBackgroundComesToTheSameTrajectory) {
     test::Random random(1);
     const auto room = test::make_room(random, Eigen::Vector3d::Zero(), 3.5, 3000);

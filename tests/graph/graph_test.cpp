@@ -329,6 +329,128 @@ TEST_F(GraphTest, AnEdgeFromAKeyframeThatNeverArrivedCountsAsALoss) {
     EXPECT_EQ(graph.trajectory().keyframes.size(), walk.keyframes.size() - 2);
 }
 
+/// Largest distance of a kept keyframe to where it truly stood.
+double worst_error(const PoseGraph& graph, const std::vector<Pose>& truth) {
+    double worst = 0;
+    for (const KeyframePose& keyframe : graph.trajectory().keyframes) {
+        const Pose& true_pose = truth[static_cast<std::size_t>(keyframe.id)];
+        worst = std::max(worst, (keyframe.world_from_camera.translation() - true_pose.translation()).norm());
+    }
+    return worst;
+}
+
+TEST_F(GraphTest, APlaceWalkedRoundAgainAndAgainTakesNoMoreKeyframes) {
+    const auto poses = square_loop(3, 12, 7);
+    const Walk walk = test::walk(room_, poses, random_);
+    GraphOptions keep_all;
+    keep_all.max_alike = 0;
+    PoseGraph graph, keeping(keep_all);
+    std::size_t after_five = 0, bytes_after_five = 0;
+    for (const Keyframe& keyframe : walk.keyframes) {
+        graph.add(keyframe);
+        keeping.add(keyframe);
+        EXPECT_EQ(graph.trajectory().keyframes.back().id, keyframe.id);
+        if (keyframe.id != 5 * 48) continue;
+        after_five = graph.trajectory().keyframes.size();
+        bytes_after_five = graph.memory_bytes();
+    }
+    graph.finish();
+    keeping.finish();
+    EXPECT_EQ(keeping.trajectory().keyframes.size(), walk.keyframes.size());
+    EXPECT_LT(after_five, 4u * 48);
+    EXPECT_LT(graph.trajectory().keyframes.size(), after_five + 12);
+    EXPECT_LT(graph.memory_bytes(), bytes_after_five + bytes_after_five / 8);
+    EXPECT_EQ(graph.counts().replaced, walk.keyframes.size() - graph.trajectory().keyframes.size());
+    expect_consistent(graph.trajectory());
+    EXPECT_EQ(graph.trajectory().keyframes[0].world_from_camera.matrix(),
+              walk.keyframes[0].odom_from_camera.matrix());
+    EXPECT_LT(worst_error(graph, poses), 1.5 * worst_error(keeping, poses) + 0.02);
+    EXPECT_LT(worst_error(graph, poses), rms_error_of_odometry(walk) / 4);
+}
+
+TEST_F(GraphTest, AnEdgeFromAKeyframeThatWasReplacedLeadsFromItsKeeper) {
+    const auto poses = square_loop(3, 12, 5);
+    Walk walk = test::walk(room_, poses, random_);
+    PoseGraph graph;
+    for (std::size_t i = 0; i + 1 < walk.keyframes.size(); ++i) graph.add(walk.keyframes[i]);
+    const auto is_kept = [&](int id) {
+        const auto& kept = graph.trajectory().keyframes;
+        return std::any_of(kept.begin(), kept.end(), [&](const KeyframePose& k) { return k.id == id; });
+    };
+    // The camera is found again against one of the first lap, which has gone.
+    int gone = 40;
+    while (gone > 0 && is_kept(gone)) --gone;
+    ASSERT_GT(gone, 0);
+    Keyframe found = walk.keyframes.back();
+    found.previous_id = gone;
+    found.previous_from_camera = poses[static_cast<std::size_t>(gone)].inverse() * poses.back();
+    found.odom_from_camera.translation().x() += 3;  // odometry is astray, as after a loss
+    found.features.clear();                         // no loop closure tells
+    graph.add(found);
+    const Pose& placed = graph.trajectory().keyframes.back().world_from_camera;
+    EXPECT_LT((placed.translation() - poses.back().translation()).norm(), 0.1);
+    EXPECT_LT(rotation_angle(placed.inverse() * poses.back()), 0.04);
+}
+
+TEST_F(GraphTest, ARoomThatLooksDifferentKeepsBothItsLooks) {
+    // Three laps, then the same room in another light: other descriptors on half of it tell, three laps more.
+    std::vector<Landmark> other_light = room_;
+    for (std::size_t i = 0; i < other_light.size(); ++i) {
+        if (i % 8 != 0) other_light[i].descriptor = random_descriptor(random_);
+    }
+    const auto poses = square_loop(3, 12, 8);
+    Walk walk = test::walk(room_, poses, random_);
+    const int change = 4 * 48;
+    for (Keyframe& keyframe : walk.keyframes) {
+        if (keyframe.id >= change)
+            keyframe.features = see(other_light, poses[static_cast<std::size_t>(keyframe.id)], random_);
+    }
+    PoseGraph graph;
+    for (const Keyframe& keyframe : walk.keyframes) graph.add(keyframe);
+    int before = 0, after = 0;
+    for (const KeyframePose& keyframe : graph.trajectory().keyframes)
+        ++(keyframe.id < change ? before : after);
+    EXPECT_GT(before, 40) << "the first light comes back";
+    EXPECT_GT(after, 40);
+    EXPECT_GT(graph.counts().replaced, 100u);
+}
+
+TEST_F(GraphTest, NothingAlikeInOnePlaceIsBoundedToo) {
+    GraphOptions options;
+    options.max_place = 5;
+    PoseGraph graph(options);
+    Walk walk =
+        test::walk(room_, std::vector<Pose>(80, looking({0, 0, 0}, 0)), random_, {Twist::Zero(), 0, 0});
+    for (Keyframe& keyframe : walk.keyframes) {
+        keyframe.covariance.setZero();
+        for (Feature& feature : keyframe.features) feature.descriptor = random_descriptor(random_);
+        graph.add(keyframe);
+    }
+    EXPECT_LE(graph.trajectory().keyframes.size(), 5u + 1 + 24);
+    EXPECT_EQ(graph.trajectory().keyframes.front().id, 0);
+    EXPECT_EQ(graph.trajectory().keyframes.back().id, 79);
+}
+
+TEST_F(GraphTest, IdsFarFromTheLastAreRefusedAndAStrayFirstOneDoesNotStopIt) {
+    const Walk walk = test::walk(room_, square_loop(3, 12, 0.3), random_);
+    PoseGraph graph;
+    EXPECT_TRUE(graph.expects(2147483647)) << "of the first nobody can tell";
+    Keyframe stray = walk.keyframes[0];
+    stray.id = 2147483647;
+    graph.add(stray);
+    EXPECT_FALSE(graph.expects(0));
+    for (const Keyframe& keyframe : walk.keyframes) graph.add(keyframe);
+    EXPECT_EQ(graph.trajectory().keyframes.size(), walk.keyframes.size());
+    const int last = walk.keyframes.back().id;
+    EXPECT_TRUE(graph.expects(last + 1));
+    EXPECT_TRUE(graph.expects(last + 10000));
+    EXPECT_FALSE(graph.expects(last + 10001));
+    EXPECT_FALSE(graph.expects(last));
+    EXPECT_FALSE(graph.expects(-1));
+    EXPECT_THROW(graph.add(stray), std::invalid_argument);
+    EXPECT_EQ(graph.trajectory().keyframes.size(), walk.keyframes.size());
+}
+
 TEST_F(GraphTest, WorldIsTheOdomFrameOfTheFirstKeyframe) {
     Walk walk = test::walk(room_, square_loop(3, 10, 0.3), random_);
     const Pose other = random_.pose();

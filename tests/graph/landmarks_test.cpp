@@ -81,6 +81,31 @@ TEST(Landmarks, MergeJoinsWhatCoincidesAfterTheGraphMoved) {
     for (const Sighting& sighting : landmarks.shared()) EXPECT_EQ(sighting.landmark, 0);
 }
 
+TEST(Landmarks, ANodeThatGoesLeavesWhatItSawToItsKeeper) {
+    Landmarks landmarks({});
+    const Pose eye = Pose::Identity();
+    const Pose aside = make_pose({1, 0, 0}, Eigen::Quaterniond::Identity());
+    const auto wall = [](const Pose& pose) { return rectangle(pose, {0, 2, 0}, 1.5 * kX, 1.0 * kZ); };
+    landmarks.add(0, {floor_seen(eye)}, eye);
+    landmarks.add(1, {floor_seen(eye), wall(eye)}, eye);
+    landmarks.add(2, {floor_seen(aside), wall(aside)}, aside);
+    ASSERT_EQ(landmarks.shared().size(), 5u);
+    // Node 1 goes, node 0 keeps: it has seen the floor itself, and now stands for the view of the wall.
+    landmarks.hand_over(1, 0, Pose::Identity());
+    EXPECT_EQ(landmarks.landmarks().size(), 2u);
+    ASSERT_EQ(landmarks.shared().size(), 4u);
+    for (const Sighting& sighting : landmarks.shared()) {
+        ASSERT_LE(sighting.node, 1) << "node 2 is node 1 now";
+        const Plane& plane = landmarks.landmarks()[static_cast<std::size_t>(sighting.landmark)].plane;
+        EXPECT_LT(sighting_error(sighting, sighting.node == 0 ? eye : aside, plane).norm(), 1e-6);
+    }
+    // Nobody else sees what the last one saw: the landmark stays as long as its keeper does.
+    landmarks.add(2, {rectangle(eye, {6, 0, -1}, 1.5 * kX, 1.0 * kY)}, eye);
+    EXPECT_EQ(landmarks.landmarks().size(), 3u);
+    landmarks.hand_over(2, 1, aside.inverse());
+    EXPECT_EQ(landmarks.landmarks().size(), 3u);
+}
+
 TEST(Landmarks, NothingComesOfRegionsWithoutAPlane) {
     Landmarks landmarks({});
     EXPECT_EQ(landmarks.add(0, {PlanarRegion{}}, Pose::Identity()), 0);

@@ -70,6 +70,26 @@ TEST(PlaceIndex, WhatIsSeenForeverTakesNoMoreMemory) {
     EXPECT_GT(index.scores(poster)[0], 0.9) << "what is rare is still found";
 }
 
+TEST(PlaceIndex, WhatIsRemovedIsForgottenAndItsNumberGivenAgain) {
+    Random random(6);
+    PlaceIndex index;
+    const auto hall = descriptors(random, 50), room = descriptors(random, 50), yard = descriptors(random, 50);
+    EXPECT_EQ(index.add(hall), 0);
+    EXPECT_EQ(index.add(room), 1);
+    const std::size_t entries = index.entries();
+    index.remove(0, hall);
+    EXPECT_EQ(index.size(), 1);
+    EXPECT_EQ(index.scores(hall)[0], 0.0);
+    EXPECT_GT(index.scores(room)[1], 0.9);
+    EXPECT_EQ(index.add(yard), 0);
+    EXPECT_GT(index.scores(yard)[0], 0.9);
+    for (int i = 0; i < 1000; ++i) {
+        index.remove(0, yard);
+        index.add(yard);
+    }
+    EXPECT_LE(index.entries(), entries + 10) << "what comes and goes takes no more memory";
+}
+
 TEST(PlaceIndex, EmptyIndexAndEmptyViews) {
     Random random(4);
     PlaceIndex index;

@@ -144,13 +144,24 @@ TEST_F(MapShellTest, TheLastMapIsRepeatedAndARepeatedTrajectoryIsNoWork) {
     EXPECT_EQ(late->back().n_planes, 2);
 }
 
-TEST_F(MapShellTest, RegionsThatItCannotUseAreCounted) {
+TEST_F(MapShellTest, WhatItLeavesOutIsCounted) {
     MapShell shell(bus_, {});
     Keyframe keyframe = test::sample_keyframe();
-    keyframe.regions[1].box.half_extents.x() = 60;
+    keyframe.regions[0].box.half_extents.x() = 300;  // nobody sees that far
     bus_.publish(channels::kKeyframe, to_message(keyframe, 0));
+    keyframe.id = 2147483647;
+    keyframe.utime += 1000000;
+    bus_.publish(channels::kKeyframe, to_message(keyframe, 1));
+    KeyframeTrajectory far = trajectory();
+    far.keyframes[0].world_from_camera.translation().x() = 2e5;
+    bus_.publish(channels::kTrajectory, to_message(far, 0));
     bus_.drain();
-    EXPECT_EQ(shell.status().losses().at("regions that are none, or larger or farther than can be seen"), 1);
+    const auto& losses = shell.status().losses();
+    EXPECT_EQ(losses.at("regions that are none, or larger or farther than can be seen"), 1);
+    EXPECT_EQ(losses.at("keyframes with an id out of order"), 1);
+    EXPECT_EQ(losses.at("keyframe poses that are none or out of range"), 1);
+    EXPECT_EQ(losses.size(), 3u);
+    EXPECT_EQ(shell.status().dropped_count(), 1);
 }
 
 TEST_F(MapShellTest, AnOutputThatCannotBeWrittenIsAnErrorAtOnce) {

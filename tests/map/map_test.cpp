@@ -431,6 +431,69 @@ TEST(PlaneMapper, FoldedKeyframesStayInThePlanes) {
     EXPECT_EQ(folding.waiting(), 0u);
 }
 
+TEST(PlaneMapper, ReplacedKeyframesLeaveTheirPointsAndTheirSurface) {
+    PlaneMapper thinned, keeping;
+    KeyframeTrajectory all = trajectory_of({});
+    std::vector<Rectangle> with_shelf = room();
+    with_shelf.push_back({facing({-1, -0.5, 1.1}, {0, 0, 1}, {1, 0, 0}), 0.4, 0.3, {}});
+    for (int i = 0; i < 12; ++i) {
+        const Pose pose = camera_at({0.05 * i, 0, 1}, 0.1 * i);
+        all.keyframes.push_back({i, 0, pose});
+        // Only keyframe 3 sees the shelf.
+        const Keyframe seen = keyframe(i, i == 3 ? with_shelf : room(), pose, 0.002);
+        for (PlaneMapper* mapper : {&thinned, &keeping}) {
+            mapper->add(seen);
+            mapper->update(all);
+        }
+    }
+    ASSERT_EQ(keeping.map().planes.size(), 6u) << "4 walls and floor, a table, a shelf";
+    KeyframeTrajectory some = all;
+    std::erase_if(some.keyframes, [](const KeyframePose& k) { return k.id % 4 != 0; });
+    thinned.update(some);
+    EXPECT_EQ(thinned.keyframes(), 3u);
+    EXPECT_EQ(thinned.replaced(), 9u);
+    EXPECT_LT(thinned.working_bytes(), keeping.working_bytes());
+    std::set<int> ids;
+    for (const MapPlane& plane : thinned.map().planes) ids.insert(plane.id);
+    thinned.settle();
+    keeping.settle();
+    ASSERT_EQ(thinned.map().planes.size(), keeping.map().planes.size());
+    for (const MapPlane& plane : thinned.map().planes) {
+        EXPECT_TRUE(ids.contains(plane.id));
+        const MapPlane* twin = nearest(keeping.map(), plane);
+        ASSERT_NE(twin, nullptr);
+        EXPECT_NEAR(angle_between(plane.plane().normal, twin->plane().normal), 0, 1e-3);
+        EXPECT_NEAR(plane.plane().d, twin->plane().d, 1e-3);
+        EXPECT_NEAR(plane.inliers, twin->inliers, 1e-5 * twin->inliers) << "every point is still counted";
+        EXPECT_EQ(plane.keyframes, twin->keyframes);
+        EXPECT_NEAR(plane.area, twin->area, 0.03f * twin->area);
+    }
+    // And they go where their keepers go.
+    KeyframeTrajectory moved = some;
+    for (KeyframePose& k : moved.keyframes) k.world_from_camera.pretranslate(Eigen::Vector3d(0, 0, 0.5));
+    thinned.update(moved);
+    ASSERT_EQ(thinned.map().planes.size(), 6u);
+    for (const MapPlane& plane : keeping.map().planes) {
+        MapPlane higher = plane;
+        higher.center.z() += 0.5f;
+        EXPECT_NE(nearest(thinned.map(), higher), nullptr);
+    }
+}
+
+TEST(PlaneMapper, ATrajectoryThatSharesNothingWithTheLastTakesNothingAway) {
+    PlaneMapper mapper;
+    const Pose pose = camera_at({0, 0, 1});
+    mapper.add(keyframe(0, room(), pose));
+    mapper.update(trajectory_of({pose}));
+    KeyframeTrajectory other;
+    other.keyframes = {{7, 0, pose}};
+    mapper.update(other);
+    mapper.update({});
+    mapper.settle();
+    EXPECT_EQ(mapper.keyframes(), 1u);
+    EXPECT_EQ(mapper.map().planes.size(), 5u);
+}
+
 TEST(PlaneMapper, GoesOnFromAMap) {
     PlaneMapper before;
     for (int i = 0; i < 4; ++i) {

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench_soak/soak.hpp"
+
+#include <gtest/gtest.h>
+
+#include "core/temporary_folder.hpp"
+#include "sensor/simulator/simulated_source.hpp"
+#include "simulate/recording.hpp"
+
+namespace planemap::bench_soak {
+namespace {
+
+SoakPoint at(std::int64_t frames, double rss_mb) {
+    SoakPoint point;
+    point.frames = frames;
+    point.rss_mb = rss_mb;
+    return point;
+}
+
+TEST(Soak, GrowthIsFromTheFirstHalfHourToTheEnd) {
+    EXPECT_FALSE(growth({}, 1));
+    EXPECT_FALSE(growth({at(900, 50), at(1800, 60)}, 1));
+    EXPECT_NEAR(*growth({at(900, 50), at(1800, 60), at(2700, 70), at(3600, 66)}, 1), 0.1, 1e-9);
+    EXPECT_NEAR(*growth({at(900, 50), at(1800, 60)}, 2), 0.2, 1e-9) << "900 frames two seconds apart";
+}
+
+TEST(Soak, ARoundGoesOnAndOn) {
+    const test::TemporaryFolder folder;
+    const std::string name = "sim:office?frames=40&width=160&height=120";
+    auto source = std::make_unique<sim::SimulatedSource>(sim::parse_simulator_name(name));
+    Round round{folder.path() / "round.lcmlog", {}};
+    for (const StampedPose& pose : source->ground_truth())
+        round.world_from_camera.push_back(pose.world_from_camera);
+    Bus bus("memq://");
+    SensorShellOptions encoding;
+    encoding.speed = 0;
+    SensorShell sensor(bus, std::move(source), encoding);
+    record(sensor, bus, 0, round.log, [](std::int64_t) {});
+
+    SoakOptions options;
+    options.frames = 100;
+    options.every = 40;
+    options.pipeline.with_octomap = false;
+    int seen = 0;
+    const auto points = soak(round, options, [&](const SoakPoint&) { return ++seen > 0; });
+    ASSERT_EQ(points.size(), 3u);
+    EXPECT_EQ(points[0].frames, 40);
+    EXPECT_EQ(points[2].frames, 100);
+    EXPECT_LT(points[2].lost, 5);
+    EXPECT_GT(points[0].keyframes_made, 0);
+    EXPECT_GT(points[0].planes, 0u);
+    EXPECT_GT(points[2].rss_mb, 1);
+    EXPECT_GT(points[2].graph_mb, 0);
+    EXPECT_LT(points[2].off_m, 0.3);
+    EXPECT_EQ(table_line(points[0]).size(), table_head().size());
+    EXPECT_EQ(soak(round, options, [](const SoakPoint&) { return false; }).size(), 1u);
+    options.every = 0;
+    EXPECT_THROW(soak(round, options, [](const SoakPoint&) { return true; }), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace planemap::bench_soak
