@@ -53,8 +53,8 @@ struct CameraInfo {
     DepthNoise noise;
 
     double metres(std::uint16_t raw) const { return raw / depth_units_per_metre; }
-    /// Throws std::invalid_argument that names every bad field (sizes 1 to 8192, focal lengths finite and >
-    /// 0, ...).
+    /// Throws std::invalid_argument that names every bad field (sizes 1 to 8192, focal lengths finite and > 0
+    /// and the depth camera's 0.3 to 4 times the colour camera's, ...).
     void validate() const;
 };
 

@@ -236,25 +236,34 @@ void ShapeTracer::trace_rings(std::vector<PlanarRegion>& regions) {
 /// corner belongs to than it may be. A reading's place is its foot on the plane.
 Eigen::Vector3d ShapeTracer::held(const Eigen::Vector2d& corner, const Eigen::Vector3d& p,
                                   const CameraInfo& camera, std::uint16_t label, const Plane& plane) const {
-    constexpr double kReach = 0.75;  // of a block
+    constexpr double kReach = 0.9;  // of a block
+    const double reach_per_z = kReach * block_px_ / std::max(camera.depth.fx, camera.depth.fy);
+    double nearest = std::numeric_limits<double>::infinity();  // squared, over the squared reach
+    Eigen::Vector3d at = p;
+    const auto is_near = [&](int u, int v) {
+        if ((*labels_)(u, v) != label) return false;
+        const double z = camera.metres((*depth_)(u, v)), reach = reach_per_z * z;
+        const Eigen::Vector3d foot = plane.project(camera.depth.unproject(u, v, z));
+        const double distance2 = (foot - p).squaredNorm() / (reach * reach);
+        if (distance2 < nearest) nearest = distance2, at = foot;
+        return distance2 <= 1;
+    };
     // Corners are midpoints of edges between a block with the label and one without.
     int x = static_cast<int>(corner.x()), y = static_cast<int>(corner.y());
     if (blocks_(x, y) != label) (corner.x() == x ? x : y) -= 1;
-    const int u0 = (x - 1) * block_px_, v0 = (y - 1) * block_px_;
-    double nearest = std::numeric_limits<double>::infinity();
-    Eigen::Vector3d at = p;
-    for (int v = v0; v < std::min(v0 + block_px_, labels_->height); ++v) {
-        for (int u = u0; u < std::min(u0 + block_px_, labels_->width); ++u) {
-            if ((*labels_)(u, v) != label) continue;
-            const Eigen::Vector3d foot =
-                plane.project(camera.depth.unproject(u, v, camera.metres((*depth_)(u, v))));
-            const double distance2 = (foot - p).squaredNorm();
-            if (distance2 < nearest) nearest = distance2, at = foot;
-        }
+    const int u0 = (x - 1) * block_px_, u1 = std::min(u0 + block_px_, labels_->width);
+    const int v0 = (y - 1) * block_px_, v1 = std::min(v0 + block_px_, labels_->height);
+    // Most often the pixel beside the corner is one.
+    if (is_near(std::clamp(static_cast<int>((corner.x() - 1) * block_px_), u0, u1 - 1),
+                std::clamp(static_cast<int>((corner.y() - 1) * block_px_), v0, v1 - 1)))
+        return p;
+    for (int v = v0; v < v1; ++v) {
+        for (int u = u0; u < u1; ++u)
+            if (is_near(u, v)) return p;
     }
-    const double distance = (p - at).norm();
-    const double reach = kReach * block_px_ * at.z() / std::max(camera.depth.fx, camera.depth.fy);
-    return distance > reach ? Eigen::Vector3d(at + reach / distance * (p - at)) : p;
+    return nearest < std::numeric_limits<double>::infinity()
+               ? Eigen::Vector3d(at + (p - at) / std::sqrt(nearest))
+               : p;
 }
 
 void ShapeTracer::shape(const CameraInfo& camera, std::uint16_t label, PlanarRegion& region) {

@@ -22,7 +22,7 @@ struct DepthRange {
 
 /// Gives each region its box and outline from a label image (i + 1: on regions[i]). plane, moments and rms
 /// of the regions must be set. The outline follows the pixels on a grid of width / 160 pixels; parts smaller
-/// than a grid cell are left out. Every vertex lies within three quarters of a grid cell (as long as it is at
+/// than a grid cell are left out. Every vertex lies within nine tenths of a grid cell (as long as it is at
 /// the reading's distance, seen from the front) of one of the region's readings: where a plane is seen at a
 /// grazing angle, a pixel beside the last reading may lie metres beyond it. The box holds the outline, and 3
 /// RMS on either side of the plane.

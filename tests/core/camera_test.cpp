@@ -108,7 +108,8 @@ TEST(Camera, ResolutionsTooFarApartAreRefusedWithBothFocalLengths) {
     }
     CameraInfo info = kinect();
     info.color.fx = 2100;  // depth's 525 is a quarter
-    EXPECT_THAT(error_of(info), HasSubstr("depth.fx / color.fx is 0.25 (525 / 2100 pixels), must be 0.3 to 4"));
+    EXPECT_THAT(error_of(info),
+                HasSubstr("depth.fx / color.fx is 0.25 (525 / 2100 pixels), must be 0.3 to 4"));
     EXPECT_EQ(error_of(info).find("fy"), std::string::npos);
     info = kinect();
     info.color.fy = 100;

@@ -306,7 +306,7 @@ TEST_F(RunTest, DepthThatIsAllZeroIsSaid) {
     }
     log.close();
     expect_error("planemap-run", path("dark.lcmlog") + " --output " + path("out"),
-                 "none of its 5 frames could be tracked");
+                 "none of its 5 frames could be tracked: they have hardly a depth reading");
     EXPECT_EQ(report("out").at("lost"), 5) << "the report is written all the same";
 }
 
