@@ -41,6 +41,7 @@ class GraphShell : public Shell {
     ModuleStatus status_{"graph"};
     std::int32_t seq_ = 0;
     std::optional<int> last_refused_;  ///< id of the last keyframe that was left out
+    int refused_in_row_ = 0;           ///< with ids one after the other
 };
 
 /// Flags for the options, each named --<prefix>NAME.
