@@ -38,7 +38,8 @@ struct Node {
     std::int64_t utime = 0;
     Pose odom_from_camera = Pose::Identity();
     graph::View view;
-    int place = -1;  ///< number in the index
+    int place = -1;          ///< number in the index
+    std::vector<int> alike;  ///< ids of newer ones of the same place that look like it
 };
 
 /// A tie as seen from one of its nodes.
@@ -273,8 +274,12 @@ class PoseGraph::Impl {
 
     /// Adds the node, ties it to the previous one and places it.
     void append(const Keyframe& keyframe) {
-        nodes_.push_back({keyframe.id, keyframe.utime, keyframe.odom_from_camera,
-                          graph::make_view(keyframe, options_.max_features), -1});
+        nodes_.push_back({keyframe.id,
+                          keyframe.utime,
+                          keyframe.odom_from_camera,
+                          graph::make_view(keyframe, options_.max_features),
+                          -1,
+                          {}});
         Node& added = nodes_.back();
         counts_.features_left_out += keyframe.features.size() - added.view.points.size();
         added.place = index_.add(added.view.descriptors);
@@ -701,11 +706,11 @@ void PoseGraph::Impl::thin_about(int node) {
     std::vector<int> place = place_of(node);  // newest first, this one included
     std::vector<int> ids;                     // of those that go
     for (std::size_t i = 1; i < place.size(); ++i) {
+        Node& older = nodes_[at(place[i])];
         if (!is_alike(place[i], node)) continue;
-        int alike = 1;
-        for (std::size_t k = 1; k < i && alike < options_.max_alike; ++k)
-            alike += is_alike(place[i], place[k]);
-        if (alike >= options_.max_alike) ids.push_back(nodes_[at(place[i])].id);
+        std::erase_if(older.alike, [&](int id) { return node_of(id) < 0; });
+        older.alike.push_back(nodes_[at(node)].id);
+        if (older.alike.size() >= at(options_.max_alike)) ids.push_back(older.id);
     }
     for (std::size_t i = place.size(); i-- > 1 && place.size() - ids.size() > at(options_.max_place);) {
         const int id = nodes_[at(place[i])].id;

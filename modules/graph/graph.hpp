@@ -31,7 +31,7 @@ struct GraphOptions {
     double min_visible_ratio = 0.12;   ///< inliers, of the points that both views should see
     double max_contradiction = 0.25;   ///< share of plane samples that the other view saw through
 
-    int max_alike = 2;              ///< newer keyframes of the same place that look alike: an older one goes;
+    int max_alike = 3;              ///< newer keyframes of the same place that look alike: an older one goes;
                                     ///< 0: all stay
     int max_place = 8;              ///< keyframes of one place, whatever they look like; the oldest goes
     double place_m = 0.2;           ///< keyframes are of one place when they stand nearer than this,

@@ -47,22 +47,20 @@ void GraphShell::on_keyframe(const RawMessage& message) {
     start_if_due();
 }
 
-/// Says once of each run of refused keyframes what it looks like.
+/// Says what a refused keyframe looks like: of the first, and when some come in a row.
 void GraphShell::refuse(int id) {
+    constexpr int kRow = 3;
     const int last = graph_.trajectory().keyframes.back().id;
     status_.dropped();
     status_.lost(kOutOfOrder);
-    const bool is_next_of_them = last_refused_ && id == *last_refused_ + 1;
+    refused_in_row_ = last_refused_ && id == *last_refused_ + 1 ? refused_in_row_ + 1 : 1;
+    const bool is_first = !last_refused_;
     last_refused_ = id;
-    if (is_next_of_them) return;
-    const std::string what = "keyframe " + std::to_string(id) + " after keyframe " + std::to_string(last);
-    const std::string text =
-        id <= last ? what +
-                         ": odometry started again, or sent it twice; what it sends is left out until its "
-                         "ids go on from there, or planemap-graph and planemap-map are started again too"
-                   : what + " is too far ahead to follow it, and is left out";
-    spdlog::warn("graph: {}", text);
+    std::string text = "keyframe " + std::to_string(id) + " does not follow keyframe " + std::to_string(last);
+    if (id <= last && refused_in_row_ >= kRow)
+        text += ": odometry started again; start planemap-graph and planemap-map again, too";
     status_.set_text(text);
+    if (is_first || refused_in_row_ == kRow) spdlog::warn("graph: {}", text);
 }
 
 void GraphShell::start_if_due() {

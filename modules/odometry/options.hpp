@@ -48,7 +48,7 @@ struct OdometryOptions {
     int local_keyframes = 8;          ///< recent keyframes that tracking may return to; 0: never
 
     int max_descriptors = 500;         ///< features a keyframe hands to loop closure
-    int max_known_keyframes = 200;     ///< keyframes kept for relocalisation
+    int max_known_keyframes = 100;     ///< keyframes kept for relocalisation
     int relocalisation_tries = 4;      ///< keyframes matched in one lost frame
     int max_descriptor_distance = 64;  ///< bits in which matched descriptors may differ
     int max_lost_frames = 15;          ///< then a new keyframe begins, without an edge to the others
