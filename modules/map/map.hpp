@@ -70,7 +70,9 @@ class PlaneMapper {
     explicit PlaneMapper(MapOptions options = {});
 
     /// Starts from a finished map, in its world frame: its planes keep their ids and grow on. Call it first.
-    /// Planes that are larger than max_extent_m, or further out than 100 km, count in rejected().
+    /// Planes that are larger than max_extent_m, or further out than 100 km, count in rejected(). The shapes
+    /// of a very large map go on in coarser cells, the largest first, so that its rasters take 128 MB (a
+    /// rebuild holds them three times); such planes count in coarsened().
     void start_from(const PlaneMap& map);
 
     /// Takes a keyframe; it waits if no trajectory has named its pose yet. Regions that are invalid
@@ -107,6 +109,8 @@ class PlaneMapper {
     std::size_t dropped() const { return dropped_; }
     /// Regions left out so far.
     std::size_t rejected() const { return rejected_; }
+    /// Planes of start_from() whose shape goes on in cells coarser than outline_cell_m.
+    std::size_t coarsened() const { return coarsened_; }
     /// Keyframes whose regions were folded into the planes (MapOptions::fold_after).
     std::size_t folded() const { return folded_; }
     /// How often the whole map was rebuilt.
@@ -176,7 +180,7 @@ class PlaneMapper {
     int folded_up_to_ = std::numeric_limits<int>::min();  ///< keyframes up to this id are folded
     PlaneMap map_;
     FlatPolygon polygon_;  ///< scratch
-    std::size_t rejected_ = 0, dropped_ = 0, folded_ = 0, rebuilds_ = 0;
+    std::size_t rejected_ = 0, coarsened_ = 0, dropped_ = 0, folded_ = 0, rebuilds_ = 0;
     bool settled_ = true;
 };
 
