@@ -5,6 +5,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
+
+#include "core/outline_index.hpp"
+#include "core/segment.hpp"
 
 namespace planemap {
 
@@ -12,13 +16,6 @@ namespace {
 
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
     return a.x() * b.y() - a.y() * b.x();
-}
-
-double distance_to_segment(const Eigen::Vector2d& p, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-    const Eigen::Vector2d ab = b - a;
-    const double length2 = ab.squaredNorm();
-    const double s = length2 > 0 ? std::clamp((p - a).dot(ab) / length2, 0.0, 1.0) : 0.0;
-    return (p - (a + s * ab)).norm();
 }
 
 /// Even-odd rule for one ring.
@@ -72,16 +69,24 @@ double signed_area(const Ring& ring) {
 }
 
 double area(const Outline& outline) {
-    // Rings do not cross, so a ring counts as solid or hole by how many others hold it.
+    // Rings do not cross, so a ring counts as solid or hole by how many others hold it: an even or an odd
+    // number. To ask each other ring is the fastest for a few, and never ends for the many of a map's dust.
+    constexpr std::size_t kFew = 8;
+    std::optional<OutlineIndex> index;
+    if (outline.rings.size() > kFew) index.emplace(outline);
     double total = 0;
     for (std::size_t i = 0; i < outline.rings.size(); ++i) {
         const Ring& ring = outline.rings[i];
         if (ring.size() < 3) continue;
-        std::size_t depth = 0;
         // The midpoint of an edge, so that rings that share a vertex do not confuse the test.
         const Eigen::Vector2d probe = 0.5 * (ring[0] + ring[1]);
-        for (std::size_t j = 0; j < outline.rings.size(); ++j) {
-            if (j != i && contains(outline.rings[j], probe)) ++depth;
+        std::size_t depth = 0;
+        if (index) {
+            const auto around = index->rings_around(probe);
+            depth = around.size() - static_cast<std::size_t>(std::count(around.begin(), around.end(), i));
+        } else {
+            for (std::size_t j = 0; j < outline.rings.size(); ++j)
+                depth += j != i && contains(outline.rings[j], probe);
         }
         total += (depth % 2 == 0 ? 1.0 : -1.0) * std::abs(signed_area(ring));
     }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/outline_index.hpp"
 #include "map/export.hpp"
 #include "map/export_parts.hpp"
 
@@ -30,26 +31,28 @@ Json position(const Eigen::Vector2d& p) {
 
 /// Borders counter-clockwise, holes clockwise, as RFC 7946 asks; rings are even-odd and do not cross.
 std::vector<Part> parts_of(const std::vector<Ring>& rings) {
-    const auto holds = [&](std::size_t outer, std::size_t inner) {
-        return outer != inner && contains(Outline{{rings[outer]}}, 0.5 * (rings[inner][0] + rings[inner][1]));
-    };
-    std::vector<std::size_t> depth(rings.size(), 0), part_of(rings.size(), 0);
-    for (std::size_t i = 0; i < rings.size(); ++i)
-        for (std::size_t j = 0; j < rings.size(); ++j) depth[i] += holds(j, i);
+    const OutlineIndex index(Outline{rings});
+    std::vector<std::vector<std::size_t>> around(rings.size());
+    std::vector<std::size_t> part_of(rings.size(), 0);
+    for (std::size_t i = 0; i < rings.size(); ++i) {
+        around[i] = index.rings_around(0.5 * (rings[i][0] + rings[i][1]));
+        std::erase(around[i], i);
+    }
+    const auto depth = [&](std::size_t ring) { return around[ring].size(); };
     const auto turned = [](Ring ring, bool counter_clockwise) {
         if ((signed_area(ring) > 0) != counter_clockwise) std::reverse(ring.begin(), ring.end());
         return ring;
     };
     std::vector<Part> parts;
     for (std::size_t i = 0; i < rings.size(); ++i) {
-        if (depth[i] % 2 != 0) continue;
+        if (depth(i) % 2 != 0) continue;
         part_of[i] = parts.size();
         parts.push_back({turned(rings[i], true)});
     }
     for (std::size_t i = 0; i < rings.size(); ++i) {
-        if (depth[i] % 2 == 0) continue;
-        for (std::size_t j = 0; j < rings.size(); ++j)
-            if (depth[j] + 1 == depth[i] && holds(j, i)) parts[part_of[j]].push_back(turned(rings[i], false));
+        if (depth(i) % 2 == 0) continue;
+        for (const std::size_t j : around[i])
+            if (depth(j) + 1 == depth(i)) parts[part_of[j]].push_back(turned(rings[i], false));
     }
     return parts;
 }

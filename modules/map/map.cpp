@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <set>
 #include <thread>
@@ -36,6 +37,8 @@ constexpr std::size_t kMaxWaiting = 4096;
 constexpr std::int64_t kMostMissed = 10000;
 /// Keyframes near one that goes, which take over what it saw.
 constexpr std::size_t kHeirs = 8;
+/// Cells of the rasters of a map to start from, a byte each: 80,000 m2 at 2.5 cm.
+constexpr double kStartCells = 1 << 27;
 /// Hits of a look through a cell: 2^1.
 constexpr int kDoubtStrength = 1;
 
@@ -56,6 +59,32 @@ Outline transformed(const Pose& b_from_a, Outline outline) {
         for (Eigen::Vector2d& v : ring) v = (b_from_a * Eigen::Vector3d(v.x(), v.y(), 0)).head<2>();
     }
     return outline;
+}
+
+/// Of the rectangle around a plane's outline, which its raster covers.
+double raster_area(const MapPlane& plane) {
+    Eigen::Vector2d low = Eigen::Vector2d::Zero(), high = low;
+    const Outline outline = plane.outline.rings();
+    for (const Ring& ring : outline.rings) {
+        for (const Eigen::Vector2d& v : ring) {
+            low = low.cwiseMin(v);
+            high = high.cwiseMax(v);
+        }
+    }
+    return (high - low).prod();
+}
+
+/// The most cells that a raster may have, so that all of them keep within kStartCells: small planes take what
+/// they need, and the large ones share the rest evenly. Infinity if there is room for all.
+double largest_share(std::vector<double> areas, double cell_area) {
+    std::sort(areas.begin(), areas.end());
+    double left = kStartCells;
+    for (std::size_t i = 0; i < areas.size(); ++i) {
+        const double share = left / static_cast<double>(areas.size() - i), cells = areas[i] / cell_area;
+        if (cells > share) return share;
+        left -= cells;
+    }
+    return std::numeric_limits<double>::infinity();
 }
 
 }  // namespace
@@ -118,6 +147,8 @@ bool PlaneMapper::is_usable(const PlanarRegion& region) const {
 }
 
 void PlaneMapper::start_from(const PlaneMap& map) {
+    std::vector<const MapPlane*> usable;
+    std::vector<double> areas;
     for (const MapPlane& plane : map.planes) {
         double reach = static_cast<double>(plane.half_extents.norm());
         for (const std::int16_t steps : plane.outline.packed)
@@ -127,8 +158,15 @@ void PlaneMapper::start_from(const PlaneMap& map) {
             ++losses_.planes_refused;
             continue;
         }
-        fixed_.emplace_back(plane, options_.outline_cell_m);
-        next_id_ = std::max(next_id_, plane.id + 1);
+        usable.push_back(&plane);
+        areas.push_back(raster_area(plane));
+    }
+    const double most_cells = largest_share(areas, std::pow(options_.outline_cell_m, 2));
+    for (std::size_t i = 0; i < usable.size(); ++i) {
+        const double cell = std::max(options_.outline_cell_m, std::sqrt(areas[i] / most_cells));
+        coarsened_ += cell > options_.outline_cell_m;
+        fixed_.emplace_back(*usable[i], cell);
+        next_id_ = std::max(next_id_, usable[i]->id + 1);
     }
     map_.utime = map.utime;
     map_.up = map.up;

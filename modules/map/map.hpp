@@ -83,7 +83,9 @@ class PlaneMapper {
     explicit PlaneMapper(MapOptions options = {});
 
     /// Starts from a finished map, in its world frame: its planes keep their ids and grow on. Call it first.
-    /// Planes that are larger than max_extent_m, or further out than 100 km, count in rejected().
+    /// Planes that are larger than max_extent_m, or further out than 100 km, count in rejected(). The shapes
+    /// of a very large map go on in coarser cells, the largest first, so that its rasters take 128 MB (a
+    /// rebuild holds them three times); such planes count in coarsened().
     void start_from(const PlaneMap& map);
 
     /// Takes a keyframe; it waits if no trajectory has named its pose yet. Regions that are invalid
@@ -128,6 +130,8 @@ class PlaneMapper {
     /// Keyframes that are kept, and those whose regions went over to others.
     std::size_t keyframes() const { return keyframes_.size(); }
     std::size_t replaced() const { return replaced_; }
+    /// Planes of start_from() whose shape goes on in cells coarser than outline_cell_m.
+    std::size_t coarsened() const { return coarsened_; }
     /// Keyframes whose regions were folded into the planes (MapOptions::fold_after).
     std::size_t folded() const { return folded_; }
     /// How often the whole map was rebuilt.
@@ -202,7 +206,7 @@ class PlaneMapper {
     PlaneMap map_;
     FlatPolygon polygon_;  ///< scratch
     MapLosses losses_;
-    std::size_t folded_ = 0, replaced_ = 0, rebuilds_ = 0;
+    std::size_t coarsened_ = 0, folded_ = 0, replaced_ = 0, rebuilds_ = 0;
     bool settled_ = true;
 };
 

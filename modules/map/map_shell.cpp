@@ -23,6 +23,8 @@ MapShell::MapShell(Bus& bus, const MapShellOptions& options)
     : bus_(bus), output_(options.output), mapper_(options.map) {
     if (!options.start.empty()) mapper_.start_from(read_plane_map(options.start));
     tell_losses();
+    status_.lost("fine edges of planes, since the map to start from is very large",
+                 static_cast<std::int64_t>(mapper_.coarsened()));
     if (!output_.empty()) {
         // A folder that cannot be written shows now, not after the run. An earlier map stays until there is
         // one.

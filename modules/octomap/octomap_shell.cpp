@@ -15,7 +15,7 @@ namespace planemap {
 namespace {
 
 constexpr std::int64_t kPublishPeriodUs = 5000000;
-constexpr std::chrono::milliseconds kPatience{500};  // of a stop
+constexpr std::chrono::milliseconds kPatience{250};  // of a stop: to free a large tree takes as long again
 
 // Recent frames. In one process a keyframe comes right after its frame; between processes the odometry may
 // have a dozen frames before it, and at a fifth of the camera's rate those are two seconds of frames.

@@ -32,8 +32,8 @@ class OctomapShell : public Shell {
     ModuleStatus& status() override { return status_; }
     int poll() override;
     /// Brings the tree up to date with the last trajectory and publishes all its sizes. In the background it
-    /// does so for half a second at most; then the sizes are those of what the tree holds by then, which the
-    /// message and the log say.
+    /// does so for a quarter of a second at most; then the sizes are those of what the tree holds by then,
+    /// which the message and the log say.
     void finish() override;
 
     /// Precondition: built in the handler.

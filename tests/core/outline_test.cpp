@@ -39,6 +39,20 @@ Ring square(double x, double y, double side) {
     return {{x, y}, {x + side, y}, {x + side, y + side}, {x, y + side}};
 }
 
+/// Rings in rings, three deep, and many of them side by side: each counts by how many hold it.
+TEST(Outline, AreaOfManyRings) {
+    Outline outline;
+    const auto square = [](double x, double y, double half) {
+        return Ring{{x - half, y - half}, {x + half, y - half}, {x + half, y + half}, {x - half, y + half}};
+    };
+    const int n = 100;
+    for (int i = 0; i < n * n; ++i) {
+        const double x = i % n, y = i / n;
+        for (const double half : {0.1, 0.4, 0.2}) outline.rings.push_back(square(x, y, half));
+    }
+    EXPECT_NEAR(area(outline), n * n * (0.64 - 0.16 + 0.04), 1e-6);
+}
+
 TEST(Outline, SignedAreaFollowsTheDirection) {
     Ring ring = square(1, 2, 3);
     EXPECT_DOUBLE_EQ(signed_area(ring), 9);

@@ -524,6 +524,25 @@ TEST(PlaneMapper, GoesOnFromAMap) {
     EXPECT_GT(after.map().planes[5].id, before.map().planes[4].id);
 }
 
+/// Fifty planes of 200 x 200 m took 3.2 GB for each copy of their rasters, and the run died.
+TEST(PlaneMapper, TheRastersOfAHugeMapAreBounded) {
+    PlaneMap huge;
+    for (int i = 0; i < 50; ++i) {
+        const Rectangle storey{facing({0, 0, 4.0 * i}, {0, 0, 1}, {1, 0, 0}), 100, 100, {}};
+        huge.planes.emplace_back(i, region_of(storey, Pose::Identity(), 1), 10);
+    }
+    const Rectangle table{facing({0, 0, 1}, {0, 0, 1}, {1, 0, 0}), 0.6, 0.4, {}};
+    huge.planes.emplace_back(50, region_of(table, Pose::Identity()), 10);
+    PlaneMapper mapper;
+    mapper.start_from(huge);
+    EXPECT_LT(mapper.working_bytes(), std::size_t{600} << 20);
+    EXPECT_EQ(mapper.rejected(), 0u);
+    EXPECT_EQ(mapper.coarsened(), 50u) << "the table has the room it needs";
+    ASSERT_EQ(mapper.map().planes.size(), 51u);
+    for (const MapPlane& plane : mapper.map().planes)
+        EXPECT_NEAR(plane.area, plane.id == 50 ? 0.96 : 40000, plane.id == 50 ? 0.05 : 200);
+}
+
 TEST(PlaneMapper, KeyframesThatWaitAreBounded) {
     PlaneMapper mapper;
     for (int i = 0; i < 5000; ++i) {

@@ -54,6 +54,20 @@ TEST(Triangulation, CoversHolesIslandsAndPartsOnce) {
     EXPECT_LT(t.triangles.size(), 4 * outline.vertex_count());
 }
 
+/// Each edge was compared with each other one: a minute for the dust of one large plane.
+TEST(Triangulation, EndsForDust) {
+    Outline dust;
+    std::mt19937_64 random(4);
+    std::uniform_real_distribution<double> jitter(0, 0.5);
+    for (int i = 0; i < 30000; ++i) {
+        const double x = i % 173, y = i / 173 + jitter(random);
+        dust.rings.push_back({{x, y}, {x + 0.2, y}, {x + 0.2, y + 0.2}});
+    }
+    const Triangulation t = triangulate(dust);
+    EXPECT_EQ(t.triangles.size(), 30000u);
+    EXPECT_NEAR(covered(t), 30000 * 0.02, 1e-6);
+}
+
 TEST(Triangulation, OfRasterOutlines) {
     std::mt19937_64 random(2);
     std::bernoulli_distribution set(0.6);

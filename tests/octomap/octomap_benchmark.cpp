@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <deque>
 #include <numbers>
 #include <planemap/map_size_t.hpp>
@@ -168,19 +169,23 @@ int run(int keyframes, double rate_hz, bool background) {
     }
     const double fed_s = 1e-3 * ms(Clock::now() - start);
     const Clock::time_point stop = Clock::now();
+    const std::clock_t stop_cpu = std::clock();
     shell->finish();
     bus.drain();
+    const double finished_ms = ms(Clock::now() - stop);
     const std::int64_t dropped = shell->status().dropped_count() + overflow;
     const std::string line = shell->status().line();
     shell.reset();
     const double stop_ms = ms(Clock::now() - stop);
+    const double stop_cpu_ms = 1e3 * static_cast<double>(std::clock() - stop_cpu) / CLOCKS_PER_SEC;
     std::sort(handler_ms.begin(), handler_ms.end());
     std::printf("fed in %.1f s; longest handler %.1f ms, 99.9 %% of them below %.1f ms\n", fed_s,
                 handler_ms.back(), handler_ms[handler_ms.size() * 999 / 1000]);
     std::printf("%lld keyframes dropped, %d states, the last one with %d keyframes, %lld nodes\n",
                 static_cast<long long>(dropped), states, last.n_keyframes,
                 static_cast<long long>(last.n_nodes));
-    std::printf("stopped in %.0f ms\n%s\n", stop_ms, line.c_str());
+    std::printf("finished in %.0f ms, gone in %.0f ms (CPU %.0f ms)\n%s\n", finished_ms, stop_ms, stop_cpu_ms,
+                line.c_str());
     return 0;
 }
 
