@@ -264,7 +264,14 @@ void FrameDecoder::subscribe(ModuleStatus& status, int capacity, FrameHandler ha
 }
 
 void FrameDecoder::on_camera(const RawMessage& message) {
-    CameraInfo described = from_message(planemap::decode<camera_info_t>(message.bytes));
+    CameraInfo described;
+    try {
+        described = from_message(planemap::decode<camera_info_t>(message.bytes));
+        camera_refused_.clear();
+    } catch (const MessageError& error) {
+        camera_refused_ = error.what();
+        throw;
+    }
     if (camera_ && *camera_ == described) {
         described_utime_ = newest_utime_;
         if (other_camera_ && !two_cameras_said_) {
@@ -355,7 +362,10 @@ void FrameDecoder::on_frame(const RawMessage& message) {
             if (subscriber.main_stream) status.received();
             status.dropped();
             status.lost("frames before their camera was described");
-            status.set_text(std::string("no ") + channels::kCameraInfo + " yet");
+            status.set_text(
+                camera_refused_.empty()
+                    ? std::string("no ") + channels::kCameraInfo + " yet"
+                    : std::string(channels::kCameraInfo) + " cannot be used: " + camera_refused_);
         }
         return;
     }

@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -102,6 +103,7 @@ class FrameDecoder {
     Bus& bus_;
     std::shared_ptr<const CameraInfo> camera_, other_camera_;  ///< in use; another one that was described
     bool camera_is_given_ = false, two_cameras_said_ = false;
+    std::string camera_refused_;  ///< why the last description could not be used; empty if it could
     std::optional<std::int64_t> newest_utime_,
         described_utime_;  ///< of frames; when camera_ was described last
     SenderGuard guard_{channels::kFrame};

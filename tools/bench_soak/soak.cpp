@@ -9,12 +9,14 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <optional>
 #include <stdexcept>
 
 #include "bench_map/growth.hpp"
 #include "messages/channels.hpp"
 #include "messages/convert.hpp"
 #include "messages/decode.hpp"
+#include "messages/frame_decoder.hpp"
 #include "messages/log.hpp"
 #include "sensor/simulator/simulated_source.hpp"
 #include "simulate/recording.hpp"
@@ -47,14 +49,14 @@ double rss_mb() {
 class Feed {
   public:
     Feed(const Round& round, double period_s)
-        : round_(round), period_us_(std::llround(1e6 * period_s)), log_(round.log) {}
+        : round_(round), period_us_(std::llround(1e6 * period_s)), log_(std::in_place, round.log) {}
 
     /// Publishes up to and including the next frame; returns its index in the round.
     std::size_t next(Bus& bus) {
         LogEvent event;
         for (;;) {
-            if (!log_.next(event)) {
-                log_ = LogReader(round_.log);
+            if (!log_->next(event)) {
+                log_.emplace(round_.log);
                 at_ = 0;
                 continue;
             }
@@ -62,9 +64,14 @@ class Feed {
             bus.publish_bytes(event.channel, event.bytes);
         }
         auto images = decode<bot_core::images_t>(event.bytes);
-        const std::int64_t later = kStartUtime + frames_++ * period_us_ - images.utime;
+        const std::int64_t later = kStartUtime + frames_ * period_us_ - images.utime;
         images.utime += later;
-        for (bot_core::image_t& image : images.images) image.utime += later;
+        for (bot_core::image_t& image : images.images) {
+            image.utime += later;
+            image.metadata.clear();
+            set_seq(image, static_cast<std::uint32_t>(frames_));
+        }
+        ++frames_;
         bus.publish(channels::kFrame, images);
         return at_++;
     }
@@ -72,7 +79,7 @@ class Feed {
   private:
     const Round& round_;
     std::int64_t period_us_;
-    LogReader log_;
+    std::optional<LogReader> log_;
     std::int64_t frames_ = 0;
     std::size_t at_ = 0;
 };
