@@ -56,7 +56,8 @@ void MapShell::on_trajectory(const RawMessage& message) {
 void MapShell::publish() {
     bus_.publish(channels::kMap, to_message(mapper_.map(), seq_++));
     status_.published();
-    status_.set_text(std::to_string(mapper_.map().planes.size()) + " planes");
+    status_.set_text(std::to_string(mapper_.map().planes.size()) + " planes" +
+                     (mapper_.left_out_corners() ? ", too many meet to find all corners" : ""));
     unwritten_ = true;
 }
 
