@@ -37,6 +37,9 @@ constexpr std::size_t kMaxWaiting = 4096;
 constexpr std::int64_t kMostMissed = 10000;
 /// Keyframes near one that goes, which take over what it saw.
 constexpr std::size_t kHeirs = 8;
+/// Triples of planes looked at for corners in one refresh. Ten storeys with a hundred rooms each take a
+/// tenth.
+constexpr std::size_t kMaxLooksForCorners = std::size_t{1} << 22;
 /// Cells of the rasters of a map to start from, a byte each: 80,000 m2 at 2.5 cm.
 constexpr double kStartCells = 1 << 27;
 /// Hits of a look through a cell: 2^1.
@@ -838,6 +841,30 @@ void PlaneMapper::refresh() {
     if (!changed.empty()) name();
 }
 
+/// The points where three planes meet of which one changed. Rooms have a few for each plane; what could be
+/// a map, and has a thousand planes that all meet, would have more than can be found.
+template <typename IsChanged>
+void PlaneMapper::add_corners(const AdjacencyRules& rules, IsChanged is_changed) {
+    std::map<int, std::set<int>> above;  // adjacent planes with a larger id
+    for (const IntersectionLine& line : map_.lines) above[line.plane_a].insert(line.plane_b);
+    std::size_t looks = 0;
+    left_out_corners_ = false;
+    for (const auto& [a, adjacent] : above) {
+        for (const int b : adjacent) {
+            const auto beyond = above.find(b);
+            if (beyond == above.end()) continue;
+            looks += beyond->second.size();
+            left_out_corners_ = looks > kMaxLooksForCorners;
+            if (left_out_corners_) return;
+            for (const int c : beyond->second) {
+                if (!adjacent.contains(c) || !(is_changed(a) || is_changed(b) || is_changed(c))) continue;
+                const auto point = intersection_point(shapes_.at(a), shapes_.at(b), shapes_.at(c), rules);
+                if (point) map_.points.push_back(*point);
+            }
+        }
+    }
+}
+
 void PlaneMapper::refresh_intersections(const std::vector<int>& changed_ids) {
     if (changed_ids.empty()) return;
     const AdjacencyRules rules{options_.adjacency_gap_m, options_.adjacency_angle_deg * kRadPerDeg,
@@ -871,19 +898,7 @@ void PlaneMapper::refresh_intersections(const std::vector<int>& changed_ids) {
         return std::pair(x.plane_a, x.plane_b) < std::pair(y.plane_a, y.plane_b);
     });
 
-    std::map<int, std::set<int>> above;  // adjacent planes with a larger id
-    for (const IntersectionLine& line : map_.lines) above[line.plane_a].insert(line.plane_b);
-    for (const auto& [a, adjacent] : above) {
-        for (const int b : adjacent) {
-            const auto beyond = above.find(b);
-            if (beyond == above.end()) continue;
-            for (const int c : beyond->second) {
-                if (!adjacent.contains(c) || !(is_changed(a) || is_changed(b) || is_changed(c))) continue;
-                const auto point = intersection_point(shapes_.at(a), shapes_.at(b), shapes_.at(c), rules);
-                if (point) map_.points.push_back(*point);
-            }
-        }
-    }
+    add_corners(rules, is_changed);
     std::sort(map_.points.begin(), map_.points.end(), [](auto& x, auto& y) { return x.planes < y.planes; });
     map_.lines.shrink_to_fit();
     map_.points.shrink_to_fit();

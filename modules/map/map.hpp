@@ -132,6 +132,8 @@ class PlaneMapper {
     std::size_t replaced() const { return replaced_; }
     /// Planes of start_from() whose shape goes on in cells coarser than outline_cell_m.
     std::size_t coarsened() const { return coarsened_; }
+    /// True if so many planes meet one another that map() does not hold all points where three do.
+    bool left_out_corners() const { return left_out_corners_; }
     /// Keyframes whose regions were folded into the planes (MapOptions::fold_after).
     std::size_t folded() const { return folded_; }
     /// How often the whole map was rebuilt.
@@ -190,6 +192,8 @@ class PlaneMapper {
     void refresh();
     bool derive(Surface& surface, std::optional<MapPlane>& plane) const;
     void name();
+    template <typename IsChanged>
+    void add_corners(const AdjacencyRules& rules, IsChanged is_changed);
     void refresh_intersections(const std::vector<int>& changed_ids);
 
     MapOptions options_;
@@ -206,6 +210,7 @@ class PlaneMapper {
     PlaneMap map_;
     FlatPolygon polygon_;  ///< scratch
     MapLosses losses_;
+    bool left_out_corners_ = false;
     std::size_t coarsened_ = 0, folded_ = 0, replaced_ = 0, rebuilds_ = 0;
     bool settled_ = true;
 };

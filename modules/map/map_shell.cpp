@@ -88,6 +88,7 @@ void MapShell::publish() {
 /// What there is, and what keeps it from the disk.
 void MapShell::tell() {
     std::string text = std::to_string(mapper_.map().planes.size()) + " planes";
+    if (mapper_.left_out_corners()) text += ", too many meet to find all corners";
     if (!write_error_.empty()) text += "; not written, trying every second: " + write_error_;
     status_.set_text(text);
 }

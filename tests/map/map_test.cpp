@@ -543,6 +543,30 @@ TEST(PlaneMapper, TheRastersOfAHugeMapAreBounded) {
         EXPECT_NEAR(plane.area, plane.id == 50 ? 0.96 : 40000, plane.id == 50 ? 0.05 : 200);
 }
 
+/// 400 planes of 20 x 20 m through one another: ten million triples.
+TEST(PlaneMapper, CornersOfACrowdedMapAreBounded) {
+    PlaneMap crowded;
+    std::mt19937_64 random(3);
+    std::normal_distribution<double> any;
+    for (int i = 0; i < 400; ++i) {
+        const Eigen::Vector3d n = Eigen::Vector3d(any(random), any(random), any(random)).normalized();
+        const Rectangle plane{
+            facing(Eigen::Vector3d(any(random), any(random), any(random)), n, n.unitOrthogonal()),
+            10,
+            10,
+            {}};
+        crowded.planes.emplace_back(i, region_of(plane, Pose::Identity(), 1), 10);
+    }
+    PlaneMapper mapper;
+    mapper.start_from(crowded);
+    EXPECT_TRUE(mapper.left_out_corners());
+    EXPECT_GT(mapper.map().points.size(), 1000u);
+    PlaneMapper room_mapper;
+    const Pose pose = camera_at({0, 0, 1});
+    room_mapper.add(keyframe(0, room(), pose, 0.002), pose);
+    EXPECT_FALSE(room_mapper.left_out_corners());
+}
+
 TEST(PlaneMapper, KeyframesThatWaitAreBounded) {
     PlaneMapper mapper;
     for (int i = 0; i < 5000; ++i) {
