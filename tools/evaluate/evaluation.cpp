@@ -249,6 +249,19 @@ double matched_path_length(const Trajectory& truth, const std::vector<PosePair>&
     return length;
 }
 
+double matched_extent(const Trajectory& truth, const std::vector<PosePair>& pairs) {
+    if (pairs.empty()) return 0;
+    const auto count = static_cast<double>(pairs.size());
+    const auto position = [&](const PosePair& pair) -> Eigen::Vector3d {
+        return truth[pair.first].world_from_camera.translation();
+    };
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+    for (const PosePair& pair : pairs) middle += position(pair) / count;
+    double square = 0;
+    for (const PosePair& pair : pairs) square += (position(pair) - middle).squaredNorm() / count;
+    return std::sqrt(square);
+}
+
 Trajectory without_repeated_stamps(const Trajectory& trajectory) {
     Trajectory unique;
     unique.reserve(trajectory.size());
@@ -274,6 +287,7 @@ Evaluation evaluate(const Trajectory& truth_poses, const Trajectory& estimate_po
         result.matched_share = static_cast<double>(pairs.size()) / static_cast<double>(estimate.size());
     }
     result.path_length_m = matched_path_length(truth, pairs);
+    result.extent_m = matched_extent(truth, pairs);
     result.ate = absolute_error(truth, estimate, pairs, options.scale);
     constexpr Delta kFrame{1.0, DeltaUnit::frames}, kSecond{1.0, DeltaUnit::seconds};
     result.rpe_frame = relative_error(truth, estimate, kFrame, options);

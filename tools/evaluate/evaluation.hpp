@@ -93,6 +93,9 @@ std::string why_no_relative_error(const Trajectory& truth, const Trajectory& est
 /// Length of the truth's path from the first matched pose to the last, metres; 0 without pairs.
 double matched_path_length(const Trajectory& truth, const std::vector<PosePair>& pairs);
 
+/// How far the truth's matched positions lie from their middle, RMS, metres; 0 without pairs.
+double matched_extent(const Trajectory& truth, const std::vector<PosePair>& pairs);
+
 /// The trajectory with one pose a stamp: of several the last, as the tools' dictionaries keep it. Sorted
 /// input.
 Trajectory without_repeated_stamps(const Trajectory& trajectory);
@@ -103,6 +106,7 @@ struct Evaluation {
     /// pairs / estimate_poses: the share of the estimate that the truth can judge.
     double matched_share = 0.0;
     double path_length_m = 0.0;
+    double extent_m = 0.0;  ///< of the truth's matched poses: RMS distance from their middle
     std::optional<AbsoluteError> ate;
     std::optional<RelativeError> rpe_frame, rpe_1s;
     std::string why_no_rpe_frame, why_no_rpe_1s;  ///< where they are missing

@@ -28,7 +28,8 @@ void add_errors(const Trajectory& truth, const Trajectory& estimate, Json& repor
                      {"rpe_frame_rmse_deg", nullptr},
                      {"scale", evaluation.ate->scale},
                      {"pairs", evaluation.pairs},
-                     {"path_length_m", evaluation.path_length_m}};
+                     {"path_length_m", evaluation.path_length_m},
+                     {"extent_m", evaluation.extent_m}};
     if (evaluation.rpe_frame) {
         accuracy["rpe_frame_rmse_m"] = evaluation.rpe_frame->metres.rmse;
         accuracy["rpe_frame_rmse_deg"] = evaluation.rpe_frame->degrees.rmse;

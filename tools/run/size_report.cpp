@@ -140,10 +140,7 @@ std::string notes(const Json& report) {
            "space "
            "alone leaves it out.\n"
            "- The message is the map to use, not what it takes to go on mapping.\n"
-           "- The ratios are of one resolution, and another gives others: on redkitchen of the sample data "
-           "the "
-           ".bt file is 22 times the message at 2 cm and 0.87 times at 10 cm. --octomap-resolution-m "
-           "chooses it.\n";
+           "- The ratios are of this resolution; another gives others (--octomap-resolution-m).\n";
 }
 
 }  // namespace

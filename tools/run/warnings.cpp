@@ -17,7 +17,8 @@ using Json = nlohmann::ordered_json;
 /// steps leave the surface that the frame is laid on.
 constexpr double kSlowStep_s = 0.2;
 constexpr double kScaleOff = 0.02;
-constexpr double kShortPath_m = 0.5;  ///< of which no scale can be told
+/// A path this many times as wide as its poses err tells its scale; of a smaller one the scale is noise.
+constexpr double kWide = 5;
 
 double median_step_s(const std::vector<OdometryEstimate>& estimates) {
     std::vector<std::int64_t> steps;
@@ -45,7 +46,8 @@ std::vector<std::string> warnings_of(const std::vector<OdometryEstimate>& estima
     if (!report.contains("accuracy")) return warnings;
     const Json& accuracy = report.at("accuracy");
     const Json scale = accuracy.value("scale", Json());
-    if (!scale.is_number() || accuracy.value("path_length_m", 0.0) < kShortPath_m) return warnings;
+    if (!scale.is_number() || accuracy.value("extent_m", 0.0) < kWide * accuracy.value("ate_rmse_m", 0.0))
+        return warnings;
     const double too_long = 1 / scale.get<double>() - 1;
     if (std::abs(scale.get<double>() - 1) > kScaleOff) {
         warnings.push_back(format("the trajectory is %.1f %% ", 100 * std::abs(too_long)) +
