@@ -122,7 +122,7 @@ TEST(Evaluate, AteHandChecked) {
     EXPECT_EQ(evaluation.pairs, 8u);
     EXPECT_DOUBLE_EQ(evaluation.matched_share, 1.0);
     EXPECT_NEAR(evaluation.path_length_m, 7.0, 1e-12);
-    EXPECT_NEAR(evaluation.extent_m, std::sqrt(0.75), 1e-12);
+    EXPECT_NEAR(evaluation.extent_m, std::sqrt(0.5), 1e-12);
 }
 
 TEST(Evaluate, RpeHandChecked) {
