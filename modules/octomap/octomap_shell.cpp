@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <planemap/map_size_t.hpp>
+#include <thread>
+#include <utility>
 
 #include "messages/channels.hpp"
 #include "messages/convert.hpp"
@@ -15,7 +17,7 @@ namespace planemap {
 namespace {
 
 constexpr std::int64_t kPublishPeriodUs = 5000000;
-constexpr std::chrono::milliseconds kPatience{250};  // of a stop: to free a large tree takes as long again
+constexpr std::chrono::milliseconds kPatience{250};  // of a stop
 
 // Recent frames. In one process a keyframe comes right after its frame; between processes the odometry may
 // have a dozen frames before it, and at a fifth of the camera's rate those are two seconds of frames.
@@ -28,13 +30,24 @@ constexpr std::size_t kMaxWaiting = 256;
 
 OctomapShell::OctomapShell(Bus& bus, std::shared_ptr<FrameDecoder> decoder, const OctomapOptions& options,
                            Building building)
-    : bus_(bus), decoder_(std::move(decoder)), builder_(options), resolution_m_(options.resolution_m) {
-    if (building == Building::kInBackground) worker_ = std::make_unique<OctomapWorker>(builder_);
+    : bus_(bus),
+      decoder_(std::move(decoder)),
+      builder_(std::make_unique<OctomapBuilder>(options)),
+      resolution_m_(options.resolution_m) {
+    if (building == Building::kInBackground) worker_ = std::make_unique<OctomapWorker>(*builder_);
     decoder_->subscribe(
         status_, 8, [this](const auto& frame) { on_frame(frame); }, false);
     bus_.subscribe(channels::kKeyframe, status_.guard([this](const RawMessage& m) { on_keyframe(m); }), 256);
     bus_.subscribe(channels::kTrajectory, status_.guard([this](const RawMessage& m) { on_trajectory(m); }),
                    16);
+}
+
+OctomapShell::~OctomapShell() {
+    if (!worker_) return;
+    worker_.reset();
+    // To free millions of nodes one by one takes longer than a stop may: the end of the process does not wait
+    // for it.
+    std::thread([left = std::move(builder_)] {}).detach();
 }
 
 void OctomapShell::on_frame(const std::shared_ptr<const Frame>& frame) {
@@ -76,7 +89,7 @@ void OctomapShell::on_trajectory(const RawMessage& message) {
     if (!trajectory_guard_.admits(received.seq, std::nullopt, message.bytes)) return;
     last_utime_ = trajectory.utime;
     last_revision_ = trajectory.revision;
-    if (!worker_) builder_.update(trajectory);
+    if (!worker_) builder_->update(trajectory);
     for (const KeyframePose& pose : trajectory.keyframes) {
         const auto waiting = waiting_.find(pose.id);
         if (waiting == waiting_.end()) continue;
@@ -96,7 +109,7 @@ void OctomapShell::add(int id, const Waiting& keyframe, const Pose& world_from_c
     }
     const DepthImage& depth = keyframe.frame->depth();
     const ModuleStatus::Work work(status_);
-    if (builder_.add(id, depth, keyframe.frame->camera(), world_from_camera)) {
+    if (builder_->add(id, depth, keyframe.frame->camera(), world_from_camera)) {
         status_.published();
     } else {
         drop("keyframes that the OctoMap refused");
@@ -127,12 +140,12 @@ void OctomapShell::finish() {
 OctomapState OctomapShell::state() {
     {
         const ModuleStatus::Work work(status_);
-        builder_.flush();
+        builder_->flush();
     }
     OctomapState state;
-    state.sizes = builder_.sizes();
-    state.keyframes = builder_.keyframes_in_tree();
-    state.frozen = builder_.frozen();
+    state.sizes = builder_->sizes();
+    state.keyframes = builder_->keyframes_in_tree();
+    state.frozen = builder_->frozen();
     state.utime = last_utime_;
     state.revision = last_revision_;
     state.is_up_to_date = true;

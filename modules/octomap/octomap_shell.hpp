@@ -28,6 +28,7 @@ class OctomapShell : public Shell {
   public:
     OctomapShell(Bus& bus, std::shared_ptr<FrameDecoder> decoder, const OctomapOptions& options,
                  Building building = Building::kInHandler);
+    ~OctomapShell() override;
 
     ModuleStatus& status() override { return status_; }
     int poll() override;
@@ -37,7 +38,7 @@ class OctomapShell : public Shell {
     void finish() override;
 
     /// Precondition: built in the handler.
-    OctomapBuilder& builder() { return builder_; }
+    OctomapBuilder& builder() { return *builder_; }
 
   private:
     struct Recent {
@@ -62,7 +63,7 @@ class OctomapShell : public Shell {
 
     Bus& bus_;
     std::shared_ptr<FrameDecoder> decoder_;
-    OctomapBuilder builder_;
+    std::unique_ptr<OctomapBuilder> builder_;
     std::unique_ptr<OctomapWorker> worker_;  ///< null when built in the handler
     ModuleStatus status_{"octomap"};
     StreamGuard keyframe_guard_{channels::kKeyframe, "keyframes", status_};

@@ -31,7 +31,7 @@ struct OctomapState {
 /// come first; a rebuild goes on between them, scan by scan, and takes at most half of a processor's time.
 class OctomapWorker {
   public:
-    static constexpr std::size_t kMaxWaiting = 1024;  ///< about 150 MB
+    static constexpr std::size_t kMaxWaiting = 4096;  ///< about 600 MB
 
     /// Nobody else may use the builder while the worker lives.
     explicit OctomapWorker(OctomapBuilder& builder);

@@ -7,8 +7,8 @@
 #include <map>
 #include <tuple>
 
-#include "octomap/voxel_set.hpp"
 #include "core/outline_index.hpp"
+#include "octomap/voxel_set.hpp"
 
 namespace planemap {
 
