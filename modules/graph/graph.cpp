@@ -815,7 +815,7 @@ bool PoseGraph::Impl::let_go(int node) {
 }
 
 std::size_t PoseGraph::Impl::memory_bytes() const {
-    std::size_t bytes = index_.entries() * sizeof(std::int32_t) + closures_.capacity() * sizeof(LoopClosure) +
+    std::size_t bytes = index_.memory_bytes() + closures_.capacity() * sizeof(LoopClosure) +
                         gone_.size() * sizeof(std::pair<int, Successor>) + landmarks_.memory_bytes();
     for (const auto* ties : {&odometry_, &loops_, &gaps_}) bytes += ties->capacity() * sizeof(Tie);
     for (const Node& node : nodes_) bytes += sizeof(Node) + graph::memory_bytes(node.view);

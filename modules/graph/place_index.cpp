@@ -40,6 +40,30 @@ PlaceIndex::Words PlaceIndex::words(std::span<const Descriptor> descriptors) con
     return words;
 }
 
+void PlaceIndex::list(Listing& listing, std::int32_t place) {
+    std::int32_t entry = first_unused_;
+    if (entry < 0) {
+        entry = static_cast<std::int32_t>(entries_.size());
+        entries_.push_back({});
+    } else {
+        first_unused_ = entries_[static_cast<std::size_t>(entry)].next;
+        --unused_;
+    }
+    entries_[static_cast<std::size_t>(entry)] = {place, listing.first};
+    listing.first = entry;
+    ++listing.listed;
+}
+
+void PlaceIndex::unlist(Listing& listing, std::int32_t& link) {
+    const std::int32_t entry = link;
+    Entry& e = entries_[static_cast<std::size_t>(entry)];
+    link = e.next;
+    e.next = first_unused_;
+    first_unused_ = entry;
+    ++unused_;
+    --listing.listed;
+}
+
 int PlaceIndex::add(std::span<const Descriptor> descriptors) {
     const int place = free_.empty() ? numbers_++ : free_.back();
     if (!free_.empty()) free_.pop_back();
@@ -48,9 +72,9 @@ int PlaceIndex::add(std::span<const Descriptor> descriptors) {
         for (const auto word : mine[table]) {
             Listing& listing = places_of_[table][word];
             if (++listing.count <= static_cast<std::int32_t>(kMostPlaces))
-                listing.places.push_back(place);
+                list(listing, place);
             else
-                std::vector<std::int32_t>().swap(listing.places);
+                while (listing.first >= 0) unlist(listing, listing.first);
         }
     }
     return place;
@@ -62,18 +86,20 @@ void PlaceIndex::remove(int place, std::span<const Descriptor> descriptors) {
         for (const auto word : mine[table]) {
             Listing& listing = places_of_[table][word];
             --listing.count;
-            std::erase(listing.places, place);
+            for (std::int32_t* link = &listing.first; *link >= 0;) {
+                Entry& entry = entries_[static_cast<std::size_t>(*link)];
+                if (entry.place == place)
+                    unlist(listing, *link);
+                else
+                    link = &entry.next;
+            }
         }
     }
     free_.push_back(place);
 }
 
-std::size_t PlaceIndex::entries() const {
-    std::size_t entries = 0;
-    for (const auto& table : places_of_) {
-        for (const Listing& listing : table) entries += listing.places.size();
-    }
-    return entries;
+std::size_t PlaceIndex::memory_bytes() const {
+    return kTables * (std::size_t{1} << kBits) * sizeof(Listing) + entries_.size() * sizeof(Entry);
 }
 
 std::vector<double> PlaceIndex::scores(std::span<const Descriptor> descriptors) const {
@@ -86,8 +112,10 @@ std::vector<double> PlaceIndex::scores(std::span<const Descriptor> descriptors) 
             const Listing& listing = places_of_[table][word];
             const double weight = std::log1p(size() / (1.0 + listing.count));
             total += weight;
-            if (listing.places.size() > too_common) continue;
-            for (const auto place : listing.places) scores[static_cast<std::size_t>(place)] += weight;
+            if (static_cast<std::size_t>(listing.listed) > too_common) continue;
+            for (std::int32_t entry = listing.first; entry >= 0;
+                 entry = entries_[static_cast<std::size_t>(entry)].next)
+                scores[static_cast<std::size_t>(entries_[static_cast<std::size_t>(entry)].place)] += weight;
         }
     }
     for (double& score : scores) score /= std::max(total, 1e-12);

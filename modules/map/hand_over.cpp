@@ -2,13 +2,16 @@
 #include "map/hand_over.hpp"
 
 #include <algorithm>
+#include <cmath>
+
+#include "map/surface.hpp"
 
 namespace planemap {
 
 namespace {
 
-constexpr int kSamples = 12;           // a side of the grid that tells whether a region is covered
-constexpr double kCoveredShare = 0.9;  // of its samples; outlines of one thing differ at the edges
+constexpr int kSamples = 12;            // a side of the grid that tells whether a region is covered
+constexpr double kCoveredShare = 0.97;  // of its samples; outlines of one thing differ at the edges
 
 /// Where to look for what a region covers: points inside it, in its box's x and y.
 std::vector<Eigen::Vector2d> samples_of(const StoredRegion& region, const StoredKeyframe& owner) {
@@ -34,36 +37,38 @@ void take_covered(std::vector<Eigen::Vector2d>& samples, const Pose& box_from_he
 
 }  // namespace
 
-void hand_over(const StoredKeyframe& gone, const std::vector<StoredKeyframe*>& heirs) {
+void hand_over(const StoredKeyframe& gone, const std::vector<StoredKeyframe*>& heirs,
+               const std::function<double(const StoredRegion&)>& agreement_m) {
     for (const StoredRegion& region : gone.regions) {
         if (region.plane < 0) continue;  // too far out to be in the map
-        const Pose world_from_box = PlacedRegion(*gone.world_from_camera, region).box.frame_from_box;
+        const PlacedRegion placed(*gone.world_from_camera, region);
+        const Pose box_from_world = placed.box.frame_from_box.inverse(Eigen::Isometry);
         std::vector<Eigen::Vector2d> samples = samples_of(region, gone);
         const auto all = static_cast<double>(samples.size());
-        StoredRegion* nearest = nullptr;
-        StoredKeyframe* owner = nullptr;
-        for (StoredKeyframe* heir : heirs) {
-            for (StoredRegion& other : heir->regions) {
+        double least_misfit2 = std::pow(agreement_m(region), 2);
+        StoredRegion* best = nullptr;
+        StoredKeyframe* heir = heirs.front();
+        for (StoredKeyframe* candidate : heirs) {
+            for (StoredRegion& other : candidate->regions) {
                 if (other.plane != region.plane) continue;
-                if (nearest == nullptr) {
-                    nearest = &other;
-                    owner = heir;
-                }
-                const Pose world_from_other =
-                    PlacedRegion(*heir->world_from_camera, other).box.frame_from_box;
-                take_covered(samples, world_from_box.inverse(Eigen::Isometry) * world_from_other, other,
-                             *heir);
+                const PlacedRegion placed_other(*candidate->world_from_camera, other);
+                take_covered(samples, box_from_world * placed_other.box.frame_from_box, other, *candidate);
+                const double misfit = misfit2(placed, placed_other.plane);
+                if (misfit >= least_misfit2) continue;
+                least_misfit2 = misfit;
+                best = &other;
+                heir = candidate;
             }
         }
         const bool is_covered =
-            nearest != nullptr && static_cast<double>(samples.size()) <= (1 - kCoveredShare) * all;
-        StoredKeyframe& heir = is_covered ? *owner : *heirs.front();
+            best != nullptr && static_cast<double>(samples.size()) <= (1 - kCoveredShare) * all;
+        if (!is_covered) heir = heirs.front();
         const Pose heir_from_gone =
-            heir.world_from_camera->inverse(Eigen::Isometry) * *gone.world_from_camera;
+            heir->world_from_camera->inverse(Eigen::Isometry) * *gone.world_from_camera;
         if (is_covered) {
-            take_points(*nearest, region, heir_from_gone);
+            take_points(*best, region, heir_from_gone);
         } else {
-            take_region(heir, region, gone, heir_from_gone);
+            take_region(*heir, region, gone, heir_from_gone);
         }
     }
 }

@@ -533,7 +533,8 @@ void PlaneMapper::replace(const std::vector<Replacement>& gone) {
         keyframes_.erase(kept);
     }
     for (const StoredKeyframe& keyframe : leaving) {
-        hand_over(keyframe, heirs_of(keyframe));
+        const auto heirs = heirs_of(keyframe);
+        hand_over(keyframe, heirs, [this](const StoredRegion& r) { return reliability(r).sigma_m; });
         ++replaced_;
         settled_ = false;
     }

@@ -19,15 +19,6 @@ Moments scaled(const Moments& moments, double factor) {
     return {factor * moments.count, factor * moments.sum, factor * moments.scatter};
 }
 
-/// Mean square distance of a region's plane to another one, over the region's points.
-double misfit2(const PlacedRegion& region, const Plane& plane) {
-    const Eigen::Vector3d offset = plane.normal - region.plane.normal;
-    const Eigen::Vector3d mean = region.moments.mean();
-    const double tilt = offset.dot(region.moments.covariance() * offset);
-    return std::max(0.0, tilt) +
-           std::pow(plane.signed_distance(mean) - region.plane.signed_distance(mean), 2);
-}
-
 const std::array<Eigen::Vector2d, Extent::kDirections>& directions() {
     static const auto table = [] {
         std::array<Eigen::Vector2d, Extent::kDirections> d;
@@ -41,6 +32,14 @@ const std::array<Eigen::Vector2d, Extent::kDirections>& directions() {
 }
 
 }  // namespace
+
+double misfit2(const PlacedRegion& region, const Plane& plane) {
+    const Eigen::Vector3d offset = plane.normal - region.plane.normal;
+    const Eigen::Vector3d mean = region.moments.mean();
+    const double tilt = offset.dot(region.moments.covariance() * offset);
+    return std::max(0.0, tilt) +
+           std::pow(plane.signed_distance(mean) - region.plane.signed_distance(mean), 2);
+}
 
 Extent::Extent() {
     reach_.fill(-1e300);

@@ -33,6 +33,9 @@ struct Reliability {
         1;  ///< by which a good view may be off; one that is off by twice as much counts a quarter
 };
 
+/// Mean square distance of a region's plane to another one, over the region's points.
+double misfit2(const PlacedRegion& region, const Plane& plane);
+
 /// A plane while it grows. World frame.
 struct Surface {
     int id = -1;

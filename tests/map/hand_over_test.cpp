@@ -36,11 +36,14 @@ const Rectangle kWall{facing({0, 0, 3}, {0, 0, -1}, {1, 0, 0}), 1, 0.8, {}};
 const Pose kHere = camera_at({0, 0, 0}), kAside = camera_at({0.2, 0.1, 0}, 0.1),
            kFar = camera_at({1, 0, 0}, 0.3);
 
+const auto kCentimetre = [](const StoredRegion&) { return 0.01; };
+
 TEST(HandOver, PointsOfWhatOthersSawJoinTheNearest) {
+    const Rectangle farther{facing({0, 0, 3.006}, {0, 0, -1}, {1, 0, 0}), 1, 0.8, {}};
     const StoredKeyframe gone = placed(kHere, {kWall});
-    StoredKeyframe near = placed(kAside, {kWall}), far = placed(kFar, {kWall});
+    StoredKeyframe near = placed(kAside, {kWall}), far = placed(kFar, {farther});
     const Moments all = points_of(0, {&gone, &near, &far}), of_far = points_of(0, {&far});
-    hand_over(gone, {&near, &far});
+    hand_over(gone, {&near, &far}, kCentimetre);
     ASSERT_EQ(near.regions.size(), 1u);
     EXPECT_EQ(near.regions[0].keyframes, 2);
     EXPECT_EQ(far.regions[0].keyframes, 1);
@@ -62,9 +65,9 @@ TEST(HandOver, SeveralMayCoverWhatOneDoesNot) {
     const Rectangle right{facing({0.55, 0, 3}, {0, 0, -1}, {1, 0, 0}), 0.55, 0.8, {}};
     const StoredKeyframe gone = placed(kHere, {kWall});
     StoredKeyframe near = placed(kAside, {left}), far = placed(kFar, {right});
-    hand_over(gone, {&near, &far});
+    hand_over(gone, {&near, &far}, kCentimetre);
     EXPECT_EQ(near.regions.size(), 1u);
-    EXPECT_EQ(near.regions[0].keyframes, 2);
+    EXPECT_EQ(near.regions[0].keyframes + far.regions[0].keyframes, 3);
 }
 
 TEST(HandOver, WhatNobodyElseSawMovesAsItIs) {
@@ -75,7 +78,7 @@ TEST(HandOver, WhatNobodyElseSawMovesAsItIs) {
     StoredKeyframe near = placed(kAside, {half});
     const std::uint32_t before = near.regions[0].last;
     const float count = near.regions[0].count;
-    hand_over(gone, {&near});
+    hand_over(gone, {&near}, kCentimetre);
     ASSERT_EQ(near.regions.size(), 3u) << "half of the wall is not the wall";
     EXPECT_EQ(near.regions[0].count, count);
     EXPECT_EQ(near.regions[0].last, before);
@@ -93,11 +96,25 @@ TEST(HandOver, WhatNobodyElseSawMovesAsItIs) {
     }
 }
 
+TEST(HandOver, WhatIsBeforeACupboardIsNoViewOfIt) {
+    // Both are one plane of the map, by the merging rules.
+    const Rectangle binders{facing({0, 0, 2.96}, {0, 0, -1}, {1, 0, 0}), 0.6, 0.3, {}};
+    const StoredKeyframe gone = placed(kHere, {binders});
+    StoredKeyframe near = placed(kAside, {kWall});
+    StoredKeyframe far = placed(kFar, {binders});
+    hand_over(gone, {&near, &far}, kCentimetre);
+    EXPECT_EQ(near.regions[0].keyframes, 1);
+    EXPECT_EQ(far.regions[0].keyframes, 2) << "the other view of the binders takes them";
+    hand_over(gone, {&near}, kCentimetre);
+    EXPECT_EQ(near.regions[0].keyframes, 1);
+    EXPECT_EQ(near.regions.size(), 2u) << "without one they stay apart";
+}
+
 TEST(HandOver, WhatIsOnNoPlaneEnds) {
     StoredKeyframe gone = placed(kHere, {kWall});
     gone.regions[0].plane = -1;
     StoredKeyframe near = placed(kAside, {});
-    hand_over(gone, {&near});
+    hand_over(gone, {&near}, kCentimetre);
     EXPECT_TRUE(near.regions.empty());
 }
 
