@@ -362,10 +362,9 @@ void FrameDecoder::on_frame(const RawMessage& message) {
             if (subscriber.main_stream) status.received();
             status.dropped();
             status.lost("frames before their camera was described");
-            status.set_text(
-                camera_refused_.empty()
-                    ? std::string("no ") + channels::kCameraInfo + " yet"
-                    : std::string(channels::kCameraInfo) + " cannot be used: " + camera_refused_);
+            status.set_text(camera_refused_.empty()
+                                ? std::string("no ") + channels::kCameraInfo + " yet"
+                                : std::string(channels::kCameraInfo) + " cannot be used: " + camera_refused_);
         }
         return;
     }

@@ -12,9 +12,8 @@ namespace {
 
 class OctomapShellTest : public test::ShellTest {
   protected:
-    /// Frames, keyframes and the trajectory after each, moved sideways by `shift` metres.
-    void walk(int keyframes, double shift) {
-        KeyframeTrajectory trajectory;
+    /// Frames, keyframes and the trajectory after each.
+    void walk(int keyframes) {
         for (int id = 0; id < keyframes; ++id) {
             Keyframe keyframe;
             keyframe.id = id;
@@ -22,13 +21,23 @@ class OctomapShellTest : public test::ShellTest {
             bus_.publish(channels::kFrame, frame(keyframe.utime));
             bus_.publish(channels::kKeyframe, to_message(keyframe, id));
             Pose pose = Pose::Identity();
-            pose.translation().x() = 0.1 * id + shift;
-            trajectory.keyframes.push_back({id, keyframe.utime, pose});
-            trajectory.utime = keyframe.utime;
-            trajectory.revision = id + 1;
-            bus_.publish(channels::kTrajectory, to_message(trajectory, id));
+            pose.translation().x() = 0.1 * id;
+            trajectory_.keyframes.push_back({id, keyframe.utime, pose});
+            trajectory_.utime = keyframe.utime;
+            ++trajectory_.revision;
+            bus_.publish(channels::kTrajectory, to_message(trajectory_, seq_++));
         }
     }
+    /// The trajectory again, with all keyframes `shift` metres aside.
+    void correct(double shift) {
+        for (KeyframePose& keyframe : trajectory_.keyframes)
+            keyframe.world_from_camera.translation().x() += shift;
+        ++trajectory_.revision;
+        bus_.publish(channels::kTrajectory, to_message(trajectory_, seq_++));
+    }
+
+    KeyframeTrajectory trajectory_;
+    std::int32_t seq_ = 0;
 };
 
 TEST_F(OctomapShellTest, MapsTheDepthOfKeyframesAmongCorruptMessages) {
@@ -87,7 +96,7 @@ TEST_F(OctomapShellTest, FrozenKeyframesAreCounted) {
     options.max_keyframes = 2;
     OctomapShell shell(bus_, std::make_shared<FrameDecoder>(bus_), options);
     publish_camera();
-    walk(5, 0);
+    walk(5);
     bus_.drain();
     shell.finish();
     EXPECT_EQ(shell.status().dropped_count(), 0);
@@ -99,13 +108,13 @@ TEST_F(OctomapShellTest, TheBackgroundComesToTheSameSizes) {
     OctomapShell background(bus_, std::make_shared<FrameDecoder>(bus_), {}, Building::kInBackground);
     const auto sizes = collect<map_size_t>(channels::kOctomapSize);
     publish_camera();
-    walk(12, 0);
+    walk(12);
     bus_.drain();
-    walk(12, 0.04);  // the same keyframes, corrected
+    correct(0.04);
     bus_.drain();
     EXPECT_EQ(background.status().dropped_count(), 0);
     // No time is asserted: it is asked until it has caught up, which the test's time-out bounds.
-    while (sizes->empty() || sizes->back().revision != 12 ||
+    while (sizes->empty() || sizes->back().revision != 13 ||
            background.status().line().find("not yet where") != std::string::npos) {
         background.poll();
         bus_.drain();

@@ -354,7 +354,7 @@ TEST_F(RunTest, AnOddFolderIsMappedAndWhatIsWrongInItIsSaid) {
     EXPECT_EQ(read_trajectory(folder_ / "out/trajectory.txt").at(0).utime, 1403636579763556);
     for (const char* said :
          {"are read as nanoseconds", "groundtruth.txt:1: expected", "depth 3.png: cannot open",
-          "1 frames could not be read", "1 from files that are cut short behind their last"}) {
+          "1 frames could not be read", "1 frames from files that are cut short behind their last"}) {
         EXPECT_NE(result.err.find(said), std::string::npos) << said << "\n" << result.err;
     }
     EXPECT_LT(std::count(result.err.begin(), result.err.end(), '\n'), 10) << result.err;
