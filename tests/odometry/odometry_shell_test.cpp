@@ -148,7 +148,9 @@ TEST_F(OdometryShellTest, WhatIsWrongWithALostFramesDepthIsCounted) {
     CameraInfo aside = camera();
     aside.registered = false;
     aside.color_from_depth.linear() = so3_exp({0, 1.5, 0});
-    publish(aside, 2000, 3000003);  // the camera described before lives no more
+    // The camera described before lives no more; the first frame at a jump in time is not used.
+    publish(aside, 2000, 3000003);
+    publish(aside, 2000, 3000004);
     EXPECT_EQ(count(OdometryShell::kNoReadings), 2);
     EXPECT_EQ(count(OdometryShell::kBesideColor), 1);
 }
