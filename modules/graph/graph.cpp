@@ -184,6 +184,7 @@ class PoseGraph::Impl {
     explicit Impl(GraphOptions options)
         : options_(std::move(options)), landmarks_(landmark_options(options_)) {
         options_.validate();
+        closures_.reserve(kClosuresTold + 1);
     }
 
     const KeyframeTrajectory& add(const Keyframe& keyframe) {
@@ -637,9 +638,9 @@ class PoseGraph::Impl {
     }
 
     static constexpr double kFar = 2;  // kernel widths: where a loop closure can no longer pull
-    static constexpr std::size_t kClosuresTold = 1024;  // by loop_closures()
-    static constexpr std::size_t kGoneKnown = 1024;     // keyframes that went and may yet be named
-    static constexpr int kRecent = 24;                  // newest keyframes, which all stay
+    static constexpr std::size_t kClosuresTold = 512;  // by loop_closures()
+    static constexpr std::size_t kGoneKnown = 512;     // keyframes that went and may yet be named
+    static constexpr int kRecent = 24;                 // newest keyframes, which all stay
 
     GraphOptions options_;
     graph::Landmarks landmarks_;
@@ -724,14 +725,14 @@ void PoseGraph::Impl::thin_about(int node) {
 /// The keyframes that stood where this older one did, itself included, the newest first. Only where the poses
 /// say so for certain.
 std::vector<int> PoseGraph::Impl::place_of(int node) const {
+    const double reach = options_.place_share * graph::mean_depth(nodes_[at(node)].view);
     const std::vector<Drift> drifts = drifts_from(node);
     std::vector<int> place;
     for (int i = node; i >= 0; --i) {
         const Pose apart = poses_[at(i)].inverse(Eigen::Isometry) * poses_[at(node)];
-        if (apart.translation().norm() > options_.place_m || rotation_angle(apart) > options_.place_rad)
-            continue;
-        if (drifts[at(i)].metres > options_.place_m || drifts[at(i)].radians > options_.place_rad) continue;
-        place.push_back(i);
+        const double metres = std::max(apart.translation().norm(), drifts[at(i)].metres);
+        const double radians = std::max(rotation_angle(apart), drifts[at(i)].radians);
+        if (i == node || (metres < reach && radians < options_.place_rad)) place.push_back(i);
     }
     return place;
 }

@@ -31,11 +31,12 @@ struct GraphOptions {
     double min_visible_ratio = 0.12;   ///< inliers, of the points that both views should see
     double max_contradiction = 0.25;   ///< share of plane samples that the other view saw through
 
-    int max_alike = 3;              ///< newer keyframes of the same place that look alike: an older one goes;
-                                    ///< 0: all stay
-    int max_place = 8;              ///< keyframes of one place, whatever they look like; the oldest goes
-    double place_m = 0.2;           ///< keyframes are of one place when they stand nearer than this,
-    double place_rad = 0.25;        ///< and turned by less
+    int max_alike = 2;          ///< newer keyframes of the same place that look alike: an older one goes;
+                                ///< 0: all stay
+    int max_place = 8;          ///< keyframes of one place, whatever they look like; the oldest goes
+    double place_share = 0.08;  ///< keyframes are of one place when they stand nearer than this share of the
+                                ///< depth that they see,
+    double place_rad = 0.17;    ///< and are turned by less
     double min_alike_ratio = 0.25;  ///< like points, of those that both should see, of views that look alike
 
     double surroundings_from_m = 0.3;  ///< a loop closure that moves the newest keyframe by more (metres plus
@@ -147,7 +148,7 @@ class PoseGraph {
     bool expects(int id) const;
 
     const KeyframeTrajectory& trajectory() const;
-    /// Those that were accepted, in the order they were found: of more than 1024, the newest.
+    /// Those that were accepted, in the order they were found: of more than 512, the newest.
     const std::vector<LoopClosure>& loop_closures() const;
     const GraphCounts& counts() const;
     /// Bytes that are kept, roughly.

@@ -36,8 +36,9 @@ void add_flags(Flags& flags, GraphOptions& options, const std::string& prefix) {
               "newer keyframes of the same place that look alike: an older one goes; 0: all stay");
     flags.add("max-place", options.max_place,
               "keyframes of one place, whatever they look like; the oldest goes");
-    flags.add("place-m", options.place_m, "keyframes are of one place when they stand nearer than this");
-    flags.add("place-rad", options.place_rad, "and turned by less, radians");
+    flags.add("place-share", options.place_share,
+              "keyframes are of one place when they stand nearer than this share of the depth that they see");
+    flags.add("place-rad", options.place_rad, "and are turned by less, radians");
     flags.add("min-alike-ratio", options.min_alike_ratio,
               "like points, of those that both should see, of views that look alike");
     flags.add("surroundings-from-m", options.surroundings_from_m,

@@ -42,7 +42,7 @@ void GraphOptions::validate() const {
     share(max_contradiction, "max_contradiction");
     count(max_alike, 0, "max_alike");
     count(max_place, 1, "max_place");
-    positive(place_m, "place_m");
+    positive(place_share, "place_share");
     positive(place_rad, "place_rad");
     share(min_alike_ratio, "min_alike_ratio");
     not_negative(surroundings_from_m, "surroundings_from_m");

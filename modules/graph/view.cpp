@@ -32,6 +32,17 @@ double overlap(const View& a, const View& b, const Pose& a_from_b) {
     return seen / static_cast<double>(b.points.size());
 }
 
+double mean_depth(const View& view) {
+    double sum = 0, count = 0;
+    for (const Eigen::Vector3d& p : view.points) sum += p.z();
+    if (!view.points.empty()) return sum / static_cast<double>(view.points.size());
+    for (const PlanarRegion& region : view.regions) {
+        sum += region.moments.sum.z();
+        count += region.moments.count;
+    }
+    return count > 0 ? sum / count : 0;
+}
+
 std::size_t memory_bytes(const View& view) {
     std::size_t bytes = view.points.capacity() * sizeof(Eigen::Vector3d) +
                         view.descriptors.capacity() * sizeof(Descriptor) +

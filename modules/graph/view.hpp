@@ -29,6 +29,9 @@ View make_view(const Keyframe& keyframe, int max_features);
 /// Share of the points of b that a would see if b's camera stood at a_from_b; 0 without points.
 double overlap(const View& a, const View& b, const Pose& a_from_b);
 
+/// Depth of what it shows on average: of its points or, without them, of its regions; 0 for an empty view.
+double mean_depth(const View& view);
+
 /// Bytes it takes, by capacity.
 std::size_t memory_bytes(const View& view);
 

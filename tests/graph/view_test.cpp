@@ -32,6 +32,18 @@ TEST(View, KeepsSoundFeaturesOnlyAndAtMostSoMany) {
     EXPECT_TRUE(make_view(Keyframe{}, 10).points.empty());
 }
 
+TEST(View, MeanDepthIsOfThePointsOrElseOfTheRegions) {
+    View view;
+    EXPECT_EQ(mean_depth(view), 0);
+    Pose wall = Pose::Identity();
+    wall.linear() = so3_exp({M_PI, 0, 0});
+    wall.translation().z() = 2;
+    view.regions = {test::rectangle(wall, 1, 1)};
+    EXPECT_NEAR(mean_depth(view), 2, 1e-9);
+    view.points = {{0, 0, 3}, {1, 0, 4}};
+    EXPECT_NEAR(mean_depth(view), 3.5, 1e-9);
+}
+
 TEST(View, OverlapIsWholeForTheSamePoseAndNoneForTheOppositeOne) {
     Random random(1);
     const auto room = make_room(random, Eigen::Vector3d::Zero(), 3, 2000);

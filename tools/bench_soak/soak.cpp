@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench_soak/soak.hpp"
 
+#include <malloc.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -43,6 +44,12 @@ double rss_mb() {
     double size = 0, resident = 0;
     if (!(statm >> size >> resident)) throw std::runtime_error("/proc/self/statm: cannot be read");
     return resident * static_cast<double>(::sysconf(_SC_PAGESIZE)) / 1e6;
+}
+
+/// What the process has allocated and not freed; the rest of its memory is code, and holes in the heap.
+double heap_mb() {
+    const struct mallinfo2 info = ::mallinfo2();
+    return static_cast<double>(info.uordblks + info.hblkhd) / 1e6;
 }
 
 /// The events of a round, over and over, with stamps that go on.
@@ -115,6 +122,7 @@ class Observer {
         point.loop_closures = graph.trajectory().loop_closures;
         point.planes = mapper.map().planes.size();
         point.rss_mb = rss_mb();
+        point.heap_mb = heap_mb();
         point.graph_mb = static_cast<double>(graph.memory_bytes()) / 1e6;
         point.map_mb = static_cast<double>(mapper.working_bytes() + mapper.memory_bytes()) / 1e6;
         const double now_ms = cpu_ms();
@@ -184,17 +192,18 @@ std::optional<double> growth(const std::vector<SoakPoint>& points, double period
 }
 
 std::string table_head() {
-    return "  frames   lost | keyframes    graph    map  closures planes |  RSS MB graph MB  map MB | CPU ms "
+    return "  frames   lost | keyframes    graph    map  closures planes |  RSS MB heap MB graph MB  map MB "
+           "| CPU ms "
            "  off m\n";
 }
 
 std::string table_line(const SoakPoint& p) {
-    char line[160];
+    char line[200];
     std::snprintf(line, sizeof(line),
-                  "%8lld %6lld | %9lld %8zu %6zu %9d %6zu | %7.1f %8.2f %7.2f | %6.2f %7.4f\n",
+                  "%8lld %6lld | %9lld %8zu %6zu %9d %6zu | %7.1f %7.2f %8.2f %7.2f | %6.2f %7.4f\n",
                   static_cast<long long>(p.frames), static_cast<long long>(p.lost),
                   static_cast<long long>(p.keyframes_made), p.keyframes_graph, p.keyframes_map,
-                  p.loop_closures, p.planes, p.rss_mb, p.graph_mb, p.map_mb, p.cpu_ms, p.off_m);
+                  p.loop_closures, p.planes, p.rss_mb, p.heap_mb, p.graph_mb, p.map_mb, p.cpu_ms, p.off_m);
     return line;
 }
 

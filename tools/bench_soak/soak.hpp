@@ -39,7 +39,8 @@ struct SoakPoint {
     std::size_t keyframes_map = 0;    ///< kept
     int loop_closures = 0;            ///< accepted so far
     std::size_t planes = 0;
-    double rss_mb = 0, graph_mb = 0, map_mb = 0;
+    double rss_mb = 0, heap_mb = 0;  ///< of the process: in memory, and allocated
+    double graph_mb = 0, map_mb = 0;
     double cpu_ms = 0;  ///< of the process, a frame, since the last point
     double off_m = 0;   ///< largest error of a pose in the world since the last point, from the first pose on
 };
