@@ -27,7 +27,7 @@ void GraphShell::on_keyframe(const RawMessage& message) {
     const keyframe_t received = decode<keyframe_t>(message.bytes);
     const Keyframe keyframe = from_message(received);
     if (!keyframe_guard_.admits(received.seq, received.utime, message.bytes)) return;
-    if (!graph_.expects(keyframe.id)) {
+    if (odometry_started_again_ || !graph_.expects(keyframe.id)) {
         refuse(keyframe.id);
         // Of two, nobody knows which is the stray: the graph goes on with the second.
         if (graph_.trajectory().keyframes.size() > 1) return;
@@ -57,7 +57,10 @@ void GraphShell::refuse(int id) {
     const bool is_first = !last_refused_;
     last_refused_ = id;
     std::string text = "keyframe " + std::to_string(id) + " does not follow keyframe " + std::to_string(last);
-    if (id <= last && refused_in_row_ >= kRow)
+    // From then on no id of its can be told from one of before: none is taken.
+    if (id <= last && refused_in_row_ >= kRow && graph_.trajectory().keyframes.size() > 1)
+        odometry_started_again_ = true;
+    if (odometry_started_again_)
         text += ": odometry started again; start planemap-graph and planemap-map again, too";
     status_.set_text(text);
     if (is_first || refused_in_row_ == kRow) spdlog::warn("graph: {}", text);

@@ -48,6 +48,7 @@ class GraphShell : public Shell {
     std::int64_t published_us_ = 0;    ///< wall clock of the last trajectory; 0: none yet
     std::optional<int> last_refused_;  ///< id of the last keyframe that was left out
     int refused_in_row_ = 0;           ///< with ids one after the other
+    bool odometry_started_again_ = false;
 };
 
 /// Flags for the options, each named --<prefix>NAME.

@@ -189,6 +189,12 @@ void PlaneMapper::add(const Keyframe& keyframe) {
         ++losses_.keyframes_far_ahead;
         return;
     }
+    const auto earlier = keyframes_.find(keyframe.id);
+    if (earlier != keyframes_.end() && earlier->second.world_from_camera &&
+        earlier->second.utime != keyframe.utime) {  // an odometry that started again: the pose is not its
+        ++losses_.keyframes_of_others;
+        return;
+    }
     newest_id_ = std::max(newest_id_, keyframe.id);
     std::vector<PlanarRegion> regions;
     for (const PlanarRegion& region : keyframe.regions) {

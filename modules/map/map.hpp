@@ -61,6 +61,7 @@ struct MapLosses {
     std::size_t keyframes_unplaced = 0;   ///< that waited for a pose while 4096 newer ones came
     std::size_t keyframes_too_late = 0;   ///< that came again after they were folded
     std::size_t keyframes_far_ahead = 0;  ///< with an id more than 10,000 after the largest one
+    std::size_t keyframes_of_others = 0;  ///< with the id of one in the map, and another time
 };
 
 /// Builds the map of planes from keyframes and their poses (paper section 2.3).

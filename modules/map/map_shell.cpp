@@ -44,6 +44,7 @@ void MapShell::on_keyframe(const RawMessage& message) {
     if (!keyframe_guard_.admits(received.seq, received.utime, message.bytes)) return;
     mapper_.add(keyframe);
     tell_losses();
+    tell();
 }
 
 void MapShell::on_trajectory(const RawMessage& message) {
@@ -74,6 +75,7 @@ void MapShell::tell_losses() {
     tell("keyframes without a pose", &MapLosses::keyframes_unplaced, true);
     tell("keyframes that came again after they were folded", &MapLosses::keyframes_too_late, true);
     tell("keyframes with an id out of order", &MapLosses::keyframes_far_ahead, true);
+    tell("keyframes of another odometry, with an id that is taken", &MapLosses::keyframes_of_others, true);
     told_ = now;
 }
 
@@ -89,6 +91,8 @@ void MapShell::publish() {
 void MapShell::tell() {
     std::string text = std::to_string(mapper_.map().planes.size()) + " planes";
     if (mapper_.left_out_corners()) text += ", too many meet to find all corners";
+    if (const std::size_t waiting = mapper_.waiting(); waiting > 0)
+        text += ", " + std::to_string(waiting) + " keyframes wait for a pose";
     if (!write_error_.empty()) text += "; not written, trying every second: " + write_error_;
     status_.set_text(text);
 }

@@ -90,6 +90,9 @@ void catch_stop_signals() {
     sigemptyset(&action.sa_mask);
     sigaction(SIGINT, &action, nullptr);
     sigaction(SIGTERM, &action, nullptr);
+    struct sigaction hang_up = {};  // a terminal that is closed; nohup ignores it
+    sigaction(SIGHUP, nullptr, &hang_up);
+    if (hang_up.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);
     action.sa_handler = on_alarm;
     action.sa_flags = SA_RESTART;  // writing files goes on
     sigaction(SIGALRM, &action, nullptr);

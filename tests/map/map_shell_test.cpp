@@ -144,6 +144,22 @@ TEST_F(MapShellTest, TheLastMapIsRepeatedAndARepeatedTrajectoryIsNoWork) {
     EXPECT_EQ(late->back().n_planes, 2);
 }
 
+TEST_F(MapShellTest, AnotherOdometrysKeyframeWithAKnownIdIsNotUsed) {
+    MapShell shell(bus_, {});
+    Keyframe keyframe = test::sample_keyframe();
+    bus_.publish(channels::kKeyframe, to_message(keyframe, 0));
+    bus_.publish(channels::kTrajectory, to_message(trajectory(), 0));
+    bus_.drain();
+    ASSERT_EQ(shell.mapper().map().planes.size(), 2u);
+    keyframe.utime += 5000000;
+    keyframe.regions.clear();
+    keyframe.features.clear();
+    bus_.publish(channels::kKeyframe, to_message(keyframe, 1));
+    bus_.drain();
+    EXPECT_EQ(shell.mapper().map().planes.size(), 2u);
+    EXPECT_EQ(shell.status().losses().at("keyframes of another odometry, with an id that is taken"), 1);
+}
+
 TEST_F(MapShellTest, WhatItLeavesOutIsCounted) {
     MapShell shell(bus_, {});
     Keyframe keyframe = test::sample_keyframe();

@@ -11,8 +11,8 @@
 #include <csignal>
 #include <cstring>
 #include <ctime>
-#include <regex>
 #include <stdexcept>
+#include <string_view>
 #include <system_error>
 #include <tuple>
 #include <utility>
@@ -72,10 +72,15 @@ std::vector<fs::path> entries_of(const fs::path& folder) {
     return entries;
 }
 
+bool is_number(std::string_view text) {
+    return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
 /// What is no result: trials, marks, and what a kill leaves of write_file().
 bool is_scrap(const fs::path& file) {
-    static const std::regex kScrap(R"(\..*|.*\.tmp\d+)");
-    return std::regex_match(file.filename().string(), kScrap);
+    const std::string name = file.filename().string();
+    const std::size_t tmp = name.rfind(".tmp");
+    return name.starts_with('.') || (tmp != std::string::npos && is_number(name.substr(tmp + 4)));
 }
 
 /// When something in the folder was last written: 20261128-180501, UTC.
@@ -266,14 +271,18 @@ void ResultFolder::move_into_place() {
 
 /// The folders of set_aside(), the oldest first: by date, then by the number that tells those of one second.
 std::vector<ResultFolder::Aside> ResultFolder::asides() const {
-    static const std::regex kName(R"((\d{8}-\d{6})-(\d{1,9}))");
+    // YYYYMMDD-HHMMSS-N
+    constexpr std::size_t kDay = 8, kDate = 15, kMostDigits = 9;
     std::vector<Aside> found;
     for (const fs::path& entry : entries_of(folder_)) {
         const std::string name = entry.filename().string();
         if (!name.starts_with(aside_stem())) continue;
         const std::string rest = name.substr(aside_stem().size());
-        std::smatch parts;
-        if (std::regex_match(rest, parts, kName)) found.push_back({parts[1], std::stoi(parts[2]), entry});
+        if (rest.size() <= kDate + 1 || rest.size() > kDate + 1 + kMostDigits) continue;
+        const std::string date = rest.substr(0, kDate), number = rest.substr(kDate + 1);
+        if (rest[kDay] == '-' && rest[kDate] == '-' && is_number(date.substr(0, kDay)) &&
+            is_number(date.substr(kDay + 1)) && is_number(number))
+            found.push_back({date, std::stoi(number), entry});
     }
     std::sort(found.begin(), found.end(), [](const Aside& a, const Aside& b) {
         return std::tie(a.date, a.number) < std::tie(b.date, b.number);
