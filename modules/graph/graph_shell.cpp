@@ -53,7 +53,7 @@ void GraphShell::refuse(int id) {
     const int last = graph_.trajectory().keyframes.back().id;
     status_.dropped();
     status_.lost(kOutOfOrder);
-    refused_in_row_ = last_refused_ && id == *last_refused_ + 1 ? refused_in_row_ + 1 : 1;
+    refused_in_row_ = last_refused_ && id - 1 == *last_refused_ ? refused_in_row_ + 1 : 1;
     const bool is_first = !last_refused_;
     last_refused_ = id;
     std::string text = "keyframe " + std::to_string(id) + " does not follow keyframe " + std::to_string(last);

@@ -39,6 +39,9 @@ bool is_after(const Message& from, const Message& to) {
     return seq_steps(from, to).value_or(0) > 0;
 }
 
+/// Longer steps from message to message are not usual, and times a count they must not overflow.
+constexpr std::int64_t kLongestStep_us = std::int64_t{3600} * 1000000;
+
 std::string seconds_text(std::int64_t us) {
     char text[32];
     std::snprintf(text, sizeof(text), "%.3f s", static_cast<double>(us) * 1e-6);
@@ -63,7 +66,7 @@ std::int64_t SenderGuard::step_us() const {
     auto steps = steps_us_;
     const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(n / 2);
     std::nth_element(steps.begin(), middle, steps.begin() + static_cast<std::ptrdiff_t>(n));
-    return *middle;
+    return std::min(*middle, kLongestStep_us);
 }
 
 /// Whether a message can be of the stream: no further from its last one than pauses, losses and a network's
