@@ -236,6 +236,9 @@ TEST_F(RunResults, TheSimulatorsWritingErrorsEndIt) {
     std::filesystem::create_directories(folder_ / "folder");
     expect_error("planemap-simulate", "sim:office -o " + path("folder"), "is a folder");
     expect_error("planemap-simulate", "sim:office -o " + path("folder") + "/", "is a folder");
+    for (const char* name : {"groundtruth.txt", "planes_truth.json"})
+        expect_error("planemap-simulate", "sim:office -o " + path("other/") + name,
+                     "is the name of the truth");
     EXPECT_TRUE(std::filesystem::is_empty(folder_ / "folder"));
 }
 

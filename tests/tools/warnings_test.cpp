@@ -32,6 +32,17 @@ TEST(Warnings, FramesFarApart) {
     EXPECT_THAT(warnings_of({}, false, Json::object()), IsEmpty());
 }
 
+TEST(Warnings, MostFramesLost) {
+    const auto with = [](int tracked) {
+        return warnings_of(estimates_at(0.033), false, {{"frames", 60}, {"tracked", tracked}});
+    };
+    EXPECT_THAT(with(1), ElementsAre(HasSubstr("only 1 of 60 frames are tracked")));
+    EXPECT_THAT(with(29), ElementsAre(HasSubstr("only 29 of 60")));
+    EXPECT_THAT(with(0), IsEmpty()) << "is an error already";
+    EXPECT_THAT(with(30), IsEmpty());
+    EXPECT_THAT(with(60), IsEmpty());
+}
+
 TEST(Warnings, ScaleOffTheTruth) {
     const auto with = [](Json scale, double extent_m) {
         return warnings_of(estimates_at(0.033), false,

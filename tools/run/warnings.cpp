@@ -17,6 +17,7 @@ using Json = nlohmann::ordered_json;
 /// steps leave the surface that the frame is laid on.
 constexpr double kSlowStep_s = 0.2;
 constexpr double kScaleOff = 0.02;
+constexpr double kMostTracked = 0.5;  ///< share of the frames below which it is said aloud
 /// A path this many times as wide as its poses err tells its scale; of a smaller one the scale is noise.
 constexpr double kWide = 5;
 
@@ -35,6 +36,11 @@ double median_step_s(const std::vector<OdometryEstimate>& estimates) {
 std::vector<std::string> warnings_of(const std::vector<OdometryEstimate>& estimates, bool poses_given,
                                      const Json& report) {
     std::vector<std::string> warnings;
+    const double frames = report.value("frames", 0.0), tracked = report.value("tracked", 0.0);
+    if (tracked > 0 && tracked < kMostTracked * frames) {  // of none there is an error
+        warnings.push_back(format("only %.0f", tracked) + format(" of %.0f frames are tracked", frames) +
+                           ": the map is of what these saw");
+    }
     const double step_s = median_step_s(estimates);
     if (step_s > kSlowStep_s && !poses_given) {
         warnings.push_back(

@@ -9,9 +9,9 @@
 
 namespace planemap {
 
-/// What the user should know about the input or the result, a line each: frames further apart in time than
-/// tracking is made for (unless poses were given), and a trajectory whose scale is off the truth's. Reads the
-/// report's "accuracy".
+/// What the user should know about the input or the result, a line each: most frames lost, frames further
+/// apart in time than tracking is made for (unless poses were given), and a trajectory whose scale is off the
+/// truth's. Reads the report's "frames", "tracked" and "accuracy".
 std::vector<std::string> warnings_of(const std::vector<OdometryEstimate>& estimates, bool poses_given,
                                      const nlohmann::ordered_json& report);
 

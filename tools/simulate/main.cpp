@@ -33,6 +33,11 @@ void refuse_foreign_truth(const std::filesystem::path& folder) {
 /// The name of the log in its folder.
 std::string log_name(const std::filesystem::path& output) {
     std::error_code ignored;
+    if (output.filename() == kTruth || output.filename() == kPlanes) {
+        throw std::runtime_error(output.string() +
+                                 ": is the name of the truth that is written beside the log; "
+                                 "give the log another one, e.g. office.lcmlog");
+    }
     if (!output.filename().empty() && !std::filesystem::is_directory(output, ignored))
         return output.filename().string();
     throw std::runtime_error(output.string() + ": is a folder; --output is the log to write, e.g. " +
