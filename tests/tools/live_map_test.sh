@@ -21,14 +21,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/own_network.sh"
 enter_own_network "$0" "$@"
 
 work="$(mktemp -d)"
-launch_pid=
-cleanup() {
-    if [[ -n "$launch_pid" ]] && kill -TERM "$launch_pid" 2>/dev/null; then wait "$launch_pid" || true; fi
-    rm -rf "$work"
-}
-trap cleanup EXIT
-
-launch() { exec setpriv --pdeathsig TERM "$root/tools/launch" --bin "$bin" --lcm-url "$url" "$@"; }
+stop_launch_at_exit
 
 # expect_the_same LOG NAME: LOG through planemap-run and through the processes.
 expect_the_same() {

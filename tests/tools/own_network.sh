@@ -55,3 +55,12 @@ wait_for_modules() {
         sleep 0.1
     done
 }
+
+# launch ARGS...: tools/launch of $root with $bin and $url in place of this subshell; its process id goes into launch_pid.
+launch() { exec setpriv --pdeathsig TERM "$root/tools/launch" --bin "$bin" --lcm-url "$url" "$@"; }
+
+# When the script ends, the launch still running is stopped and the folder $work removed.
+stop_launch_at_exit() {
+    launch_pid=
+    trap '[[ -z "$launch_pid" ]] || ! kill -TERM "$launch_pid" 2>/dev/null || wait "$launch_pid" || true; rm -rf "$work"' EXIT
+}

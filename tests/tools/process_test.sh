@@ -20,14 +20,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/own_network.sh"
 enter_own_network "$0" "$@"
 
 work="$(mktemp -d)"
-launch_pid=
-cleanup() {
-    if [[ -n "$launch_pid" ]] && kill -TERM "$launch_pid" 2>/dev/null; then wait "$launch_pid" || true; fi
-    rm -rf "$work"
-}
-trap cleanup EXIT
-
-launch() { exec setpriv --pdeathsig TERM "$root/tools/launch" --bin "$bin" --lcm-url "$url" "$@"; }
+stop_launch_at_exit
 
 # expect_map LOG FOLDER: map messages on the bus, and the map in the output folder.
 expect_map() {
