@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # How every target of the project is compiled: warnings, instruction set, sanitizers.
 
-# planemap_options: link it PRIVATE to each of our own targets.
+# planemap_options: link it PRIVATE to each of our own targets, as $<BUILD_INTERFACE:planemap_options> where one is installed.
 add_library(planemap_options INTERFACE)
 target_include_directories(planemap_options INTERFACE ${CMAKE_SOURCE_DIR}/modules)
 target_compile_options(planemap_options INTERFACE -Wall -Wextra -Wconversion -Werror)
@@ -49,19 +49,36 @@ function(planemap_use_precompiled target name)
     endif()
 endfunction()
 
-# planemap_library(NAME SOURCES... [PUBLIC libs...] [PRIVATE libs...])
+# planemap_library(NAME SOURCES... [PUBLIC libs...] [PRIVATE libs...]): a static library. Those of modules/ are installed;
+# to other projects planemap_<module> is planemap::<module>.
 function(planemap_library name)
     cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
     add_library(${name} STATIC ${ARG_SOURCES})
-    target_include_directories(${name} PUBLIC ${CMAKE_SOURCE_DIR}/modules)
-    target_link_libraries(${name} PUBLIC ${ARG_PUBLIC} PRIVATE planemap_options ${ARG_PRIVATE})
+    target_include_directories(${name} PUBLIC $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}/modules>)
+    target_link_libraries(${name} PUBLIC ${ARG_PUBLIC} PRIVATE $<BUILD_INTERFACE:planemap_options> ${ARG_PRIVATE})
     planemap_use_precompiled(${name} planemap_precompiled)
+    cmake_path(IS_PREFIX planemap_MODULES_DIR ${CMAKE_CURRENT_SOURCE_DIR} is_of_a_module)
+    if(is_of_a_module)
+        planemap_install_library(${name})
+    endif()
 endfunction()
 
-# planemap_program(NAME SOURCES... LIBS...): an executable in build/bin.
+set(planemap_MODULES_DIR ${CMAKE_SOURCE_DIR}/modules)
+function(planemap_install_library name)
+    string(REGEX REPLACE "^planemap_" "" exported ${name})
+    set_target_properties(${name} PROPERTIES EXPORT_NAME ${exported})
+    install(TARGETS ${name} EXPORT planemap COMPONENT dev ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+        INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/planemap)
+endfunction()
+
+# planemap_program(NAME SOURCES... LIBS... [COMPONENT of the packages, default runtime]): an executable in build/bin.
 function(planemap_program name)
-    cmake_parse_arguments(ARG "" "" "SOURCES;LIBS" ${ARGN})
+    cmake_parse_arguments(ARG "" "COMPONENT" "SOURCES;LIBS" ${ARGN})
+    if(NOT ARG_COMPONENT)
+        set(ARG_COMPONENT runtime)
+    endif()
     add_executable(${name} ${ARG_SOURCES})
     target_link_libraries(${name} PRIVATE planemap_options ${ARG_LIBS})
-    install(TARGETS ${name} RUNTIME DESTINATION bin)
+    target_link_options(${name} PRIVATE -Wl,--as-needed)  # a robot installs what is used
+    install(TARGETS ${name} COMPONENT ${ARG_COMPONENT} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endfunction()

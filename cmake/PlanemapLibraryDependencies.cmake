@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Everything from Debian's packages (tools/packages.txt). Only what CMake lacks a config for is found by hand.
+# What the libraries of modules/ need, from Debian's packages; read by the build and by find_package(planemap). Only what
+# CMake lacks a config for is found by hand.
 
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(Ceres REQUIRED)
@@ -8,10 +9,13 @@ find_package(spdlog REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(Threads REQUIRED)
-find_package(OpenCV REQUIRED COMPONENTS core imgproc features2d video calib3d rgbd)
+find_package(OpenCV REQUIRED COMPONENTS core imgproc features2d video)
 
 # find_library_target(TARGET HEADER LIBRARY): an imported target for a library without a CMake config.
 function(find_library_target target header library)
+    if(TARGET ${target})
+        return()
+    endif()
     string(MAKE_C_IDENTIFIER ${target} id)
     find_path(${id}_INCLUDE ${header} REQUIRED)
     find_library(${id}_LIBRARY ${library} REQUIRED)
@@ -23,11 +27,13 @@ find_library_target(lcm::lcm lcm/lcm-cpp.hpp lcm)
 find_library_target(turbojpeg::turbojpeg turbojpeg.h turbojpeg)
 find_library_target(libdeflate::libdeflate libdeflate.h deflate)
 find_library_target(spng::spng spng.h spng)
-find_library_target(zstd::zstd zstd.h zstd)
 
 # PCL's own config drags in VTK, Qt and MPI; the paper's RANSAC needs four of its libraries.
+if(TARGET planemap_pcl)
+    return()
+endif()
 find_path(PCL_INCLUDE pcl/point_types.h PATH_SUFFIXES pcl-1.13 pcl-1.14 pcl-1.15 REQUIRED)
-add_library(planemap_pcl INTERFACE)
+add_library(planemap_pcl INTERFACE IMPORTED GLOBAL)
 target_include_directories(planemap_pcl SYSTEM INTERFACE ${PCL_INCLUDE})
 foreach(part common kdtree search sample_consensus filters features segmentation)
     find_library(PCL_${part}_LIBRARY pcl_${part} REQUIRED)

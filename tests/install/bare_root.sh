@@ -1,0 +1,47 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# bare_root.sh BUILD: the Debian packages on a bare Debian 12. Makes them, debootstraps a root of nothing but Debian's
+# minimal system, installs planemap there as a user does, runs it, and says how large it is. Needs root and Debian's mirror.
+set -euo pipefail
+
+build="$(cd "$1" && pwd)"
+work="$(mktemp -d)"
+root="$work/root"
+trap 'umount -q "$root/proc" || true; rm -rf --one-file-system -- "$work"' EXIT
+fail() {
+    echo "FAILED: $*" >&2
+    exit 1
+}
+
+(cd "$work" && cpack --config "$build/CPackConfig.cmake" -B "$work/packages" >"$work/cpack.log") || fail "cpack: $(tail -n 5 "$work/cpack.log")"
+ls -l "$work"/packages/*.deb
+mirror="$(sed -nE 's/^(deb|URIs:) *([^ ]*debian\/?)( .*)?$/\2/p' /etc/apt/sources.list /etc/apt/sources.list.d/* 2>/dev/null | head -n 1 || true)"
+debootstrap --variant=minbase bookworm "$root" "${mirror:-http://deb.debian.org/debian}" >"$work/debootstrap.log" 2>&1 ||
+    fail "debootstrap: $(tail -n 3 "$work/debootstrap.log")"
+cp /etc/resolv.conf "$root/etc/" 2>/dev/null || true
+cp -r /etc/apt/. "$root/etc/apt/"
+mount -t proc proc "$root/proc"
+cp "$work"/packages/planemap_*.deb "$work"/packages/planemap-dev_*.deb "$root/tmp/"
+
+inside() { chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8 "$@"; }
+inside apt-get -qq update
+before="$(du -sm --one-file-system "$root/usr" | cut -f1)"
+inside bash -c 'apt-get -qq install -y --no-install-recommends /tmp/planemap_*.deb' >"$work/apt.log" 2>&1 || fail "apt: $(tail -n 5 "$work/apt.log")"
+after="$(du -sm --one-file-system "$root/usr" | cut -f1)"
+echo "planemap: $(inside dpkg-query -W -f '${Installed-Size}' planemap) kB installed, with what it needs $((after - before)) MB"
+for unwanted in g++ gcc cmake default-jre-headless openjdk-17-jre-headless libgtk-3-0 libqt5widgets5 libx11-6; do
+    if inside dpkg-query -W -f '${db:Status-Status}' "$unwanted" 2>/dev/null | grep -qx installed; then echo "note: it brings $unwanted"; fi
+done
+inside planemap-run 'sim:office?frames=20&width=320&height=240' --output /tmp/office --quiet >"$work/report.txt" || fail "planemap-run"
+grep -q OctoMap "$work/report.txt" || fail "no report"
+inside planemap-evaluate /tmp/office/groundtruth.txt /tmp/office/trajectory.txt >/dev/null || fail "planemap-evaluate"
+for program in $(cd "$root/usr/bin" && ls -d planemap-*); do
+    inside "$program" --help >/dev/null || fail "$program --help"
+done
+said="$(inside planemap-spy 2>&1 || true)"
+grep -q 'apt-get install' <<<"$said" || fail "planemap-spy without Java says: $said"
+inside bash -c 'apt-get -qq install -y liblcm-bin' >>"$work/apt.log" 2>&1 || fail "liblcm-bin"
+inside timeout 120 planemap-launch 'sim:office?frames=10&width=320&height=240' --lcm-url 'udpm://239.255.76.67:7691?ttl=0' \
+    --output /tmp/live --log /tmp/live.lcmlog || fail "planemap-launch"
+[[ -s "$root/tmp/live/plane_map.lcmlog" && -s "$root/tmp/live.lcmlog" ]] || fail "planemap-launch left no map or no log"
+echo "a bare Debian 12 runs planemap"
