@@ -2,11 +2,11 @@
 #include <cstdlib>
 
 #include "sensor/sensor_shell.hpp"
-#include "sensor/simulator/simulated_source.hpp"
+#include "simulator/simulated_source.hpp"
 
 int main(int argc, char** argv) {
     planemap::Process process("sensor", "Publishes RGB-D frames: a TUM-layout folder or the simulator.\n" +
-                                            planemap::sim::simulator_help());
+                                            planemap::simulator::simulator_help());
     std::string input;
     planemap::SensorShellOptions options;
     options.live = true;

@@ -9,7 +9,7 @@
 
 #include "core/validation.hpp"
 #include "sensor/dataset.hpp"
-#include "sensor/simulator/simulated_source.hpp"
+#include "simulator/simulated_source.hpp"
 
 namespace planemap {
 
@@ -43,7 +43,7 @@ void SourceOptions::validate() const {
 std::unique_ptr<FrameSource> open_source(const std::string& input, const SourceOptions& options) {
     options.validate();
     if (input.starts_with("sim:")) {
-        auto source = std::make_unique<sim::SimulatedSource>(sim::parse_simulator_name(input));
+        auto source = std::make_unique<simulator::SimulatedSource>(simulator::parse_simulator_name(input));
         source->select(options.frames);
         return source;
     }

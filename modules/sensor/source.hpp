@@ -1,56 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
-#include <vector>
 
-#include "core/camera.hpp"
-#include "core/image.hpp"
-#include "sensor/frame_range.hpp"
+#include "core/frame_range.hpp"
+#include "core/frame_source.hpp"
 
 namespace planemap {
-
-/// What a sensor delivers for one moment.
-struct SensorFrame {
-    std::int64_t utime = 0;                ///< of the depth image, microseconds; the frame's time
-    std::int64_t color_utime = 0;          ///< of the colour image, microseconds; 0 without colour
-    DepthImage depth;                      ///< in the sensor's units, as sensed (not registered)
-    std::vector<std::uint8_t> color_jpeg;  ///< colour as the JPEG that was stored, undecoded; or empty
-    RgbImage color;                        ///< colour pixels; empty if color_jpeg is set or without colour
-};
-
-/// What FrameSource::next() did.
-struct ReadResult {
-    enum class Status {
-        kFrame,   ///< a frame; with a message if not all is well with it
-        kBroken,  ///< a frame that cannot be used, to be counted and skipped; the message says why
-        kEnd,     ///< no more frames, and nothing more will come
-    };
-    Status status = Status::kEnd;
-    std::string message;   ///< one line: file and reason; empty when all is well
-    std::string reason{};  ///< the reason alone, alike for all files with the same fault; empty: the message
-    bool color_left_out = false;  ///< of a frame: its colour could not be used and is not in it
-    bool end_missing = false;     ///< of a frame: a file of it is cut short, but behind its last pixel
-};
-
-/// A finite or endless sequence of frames from one sensor.
-class FrameSource {
-  public:
-    virtual ~FrameSource() = default;
-
-    /// The sensor; valid, and the same for all frames.
-    virtual const CameraInfo& camera() const = 0;
-    /// Frames in total, broken ones included; nothing if it is not known.
-    virtual std::optional<std::size_t> size() const = 0;
-    /// Reads the next frame. On kFrame `frame` is whole: the depth has the camera's size. Otherwise it is
-    /// empty.
-    virtual ReadResult next(SensorFrame& frame) = 0;
-    /// A line each of what the user should know about the source before its first frame.
-    virtual std::vector<std::string> notes() const { return {}; }
-};
 
 /// How an input is read.
 struct SourceOptions {

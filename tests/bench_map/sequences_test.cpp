@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sensor/temporary_folder.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap::bench_map {
 namespace {
@@ -21,7 +21,7 @@ TEST(Sequences, RangesAreSpelledOut) {
 }
 
 TEST(Sequences, AreFoundInTheDataFolderOrElsewhere) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     std::filesystem::create_directories(folder.path() / "kitchen");
     std::string missing;
     EXPECT_EQ(input_of("kitchen", folder.path(), missing), (folder.path() / "kitchen").string());

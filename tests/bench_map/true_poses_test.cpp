@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "run/given_poses.hpp"
+#include "pipeline/given_poses.hpp"
 
 namespace planemap::bench_map {
 namespace {

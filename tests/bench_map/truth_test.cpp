@@ -13,13 +13,13 @@ using Eigen::Vector3d;
 const PinholeCamera kCamera{640, 480, 525, 525, 319.5, 239.5};
 
 /// Adds a panel that faces -y (towards a camera that looks along y), `left` and `right` along x, 2 m high.
-void add_panel(sim::WorldBuilder& builder, const std::string& name, double left, double right, double y) {
+void add_panel(simulator::WorldBuilder& builder, const std::string& name, double left, double right, double y) {
     builder.add_panel(name, {left, y, 1}, Vector3d::UnitX(), -Vector3d::UnitZ(), right - left, 2,
-                      {sim::Pattern::kPaint, {1, 1, 1}});
+                      {simulator::Pattern::kPaint, {1, 1, 1}});
 }
 
 /// What a camera at (x, y, 0) sees that looks along y.
-sim::View look(const sim::World& world, double x, double y) {
+simulator::View look(const simulator::World& world, double x, double y) {
     Pose pose = Pose::Identity();
     pose.linear().col(0) = Vector3d::UnitX();
     pose.linear().col(1) = -Vector3d::UnitZ();
@@ -29,7 +29,7 @@ sim::View look(const sim::World& world, double x, double y) {
 }
 
 TEST(TruthCollector, SeesARectangleWithoutHoles) {
-    sim::WorldBuilder builder("test", 1);
+    simulator::WorldBuilder builder("test", 1);
     add_panel(builder, "wall", -0.5, 0.5, 2);
     TruthCollector truth(builder.world());
     EXPECT_TRUE(truth.planes().empty());
@@ -49,12 +49,12 @@ TEST(TruthCollector, SeesARectangleWithoutHoles) {
 }
 
 TEST(TruthCollector, SeesNothingBehindOrOutOfRangeOrGrazing) {
-    sim::WorldBuilder builder("test", 1);
+    simulator::WorldBuilder builder("test", 1);
     add_panel(builder, "front", -0.5, 0.5, 2);
     add_panel(builder, "hidden", -0.5, 0.5, 3);
     add_panel(builder, "far", -6, 6, 4.2);
     builder.add_panel("floor", {-1, 3, -0.2}, Vector3d::UnitX(), -Vector3d::UnitY(), 2, 6,
-                      {sim::Pattern::kPaint, {1, 1, 1}});
+                      {simulator::Pattern::kPaint, {1, 1, 1}});
     TruthCollector truth(builder.world());
     truth.add(look(builder.world(), 0, 0), {});
     std::vector<std::string> names;
@@ -74,7 +74,7 @@ TEST(TruthCollector, SeesNothingBehindOrOutOfRangeOrGrazing) {
 
 TEST(TruthCollector, PartsOfOnePlaneBelongTogetherWithinHalfAMetre) {
     for (const double gap : {0.4, 0.6}) {
-        sim::WorldBuilder builder("test", 1);
+        simulator::WorldBuilder builder("test", 1);
         add_panel(builder, "left", -1.2, -0.5 * gap, 2);
         add_panel(builder, "right", 0.5 * gap, 1.0, 2);
         TruthCollector truth(builder.world());
@@ -86,14 +86,14 @@ TEST(TruthCollector, PartsOfOnePlaneBelongTogetherWithinHalfAMetre) {
 }
 
 TEST(TruthCollector, ItIsTheBoxesOfPartsThatAreNear) {
-    sim::WorldBuilder builder("test", 1);
+    simulator::WorldBuilder builder("test", 1);
     // A frame of an L, and a piece in its corner that is 0.7 m from either leg.
     builder.add_panel("low", {-1, 2, -0.6}, Vector3d::UnitX(), -Vector3d::UnitZ(), 2, 0.1,
-                      {sim::Pattern::kPaint, {1, 1, 1}});
+                      {simulator::Pattern::kPaint, {1, 1, 1}});
     builder.add_panel("left", {-1, 2, 0.7}, Vector3d::UnitX(), -Vector3d::UnitZ(), 0.1, 1.35,
-                      {sim::Pattern::kPaint, {1, 1, 1}});
+                      {simulator::Pattern::kPaint, {1, 1, 1}});
     builder.add_panel("middle", {0.2, 2, 0.5}, Vector3d::UnitX(), -Vector3d::UnitZ(), 0.3, 0.3,
-                      {sim::Pattern::kPaint, {1, 1, 1}});
+                      {simulator::Pattern::kPaint, {1, 1, 1}});
     TruthCollector truth(builder.world());
     truth.add(look(builder.world(), 0, 0), {});
     ASSERT_EQ(truth.planes().size(), 1u);
@@ -101,7 +101,7 @@ TEST(TruthCollector, ItIsTheBoxesOfPartsThatAreNear) {
 }
 
 TEST(TruthCollector, ThingsBeforeEachOtherAreTwoPlanes) {
-    sim::WorldBuilder builder("test", 1);
+    simulator::WorldBuilder builder("test", 1);
     add_panel(builder, "front", -0.5, 0.1, 2);
     add_panel(builder, "back", 0.1, 0.8, 2.002);
     TruthCollector truth(builder.world());
@@ -110,7 +110,7 @@ TEST(TruthCollector, ThingsBeforeEachOtherAreTwoPlanes) {
 }
 
 TEST(TruthCollector, MoreViewsShowMore) {
-    sim::WorldBuilder builder("test", 1);
+    simulator::WorldBuilder builder("test", 1);
     add_panel(builder, "wall", -4, 4, 2);
     TruthCollector truth(builder.world());
     double area = 0;

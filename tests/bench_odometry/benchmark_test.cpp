@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "sensor/temporary_folder.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap::bench_odometry {
 namespace {
@@ -13,7 +13,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 
 TEST(Benchmark, RunsMethodsOnARenderedSequence) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     BenchmarkOptions options;
     options.cache = folder.path();
     options.frames = 15;
@@ -37,14 +37,14 @@ TEST(Benchmark, RunsMethodsOnARenderedSequence) {
 
 TEST(Benchmark, ErrorsNameMethodSequenceAndReason) {
     const Benchmark benchmark({});
-    EXPECT_THAT(error_of([&] {
+    EXPECT_THAT(test::error_of([&] {
                     benchmark.run({"kitchen", "/no/such/folder", std::nullopt}, known_methods().at(0));
                 }),
                 AllOf(HasSubstr("default on kitchen"), HasSubstr("/no/such/folder")));
     BenchmarkOptions bad;
     bad.frames = -1;
     bad.slow_frames = -2;
-    EXPECT_THAT(error_of([&] { Benchmark{bad}; }), AllOf(HasSubstr("frames"), HasSubstr("slow-frames")));
+    EXPECT_THAT(test::error_of([&] { Benchmark{bad}; }), AllOf(HasSubstr("frames"), HasSubstr("slow-frames")));
 }
 
 }  // namespace

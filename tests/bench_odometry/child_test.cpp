@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "messages/module_status.hpp"
-#include "sensor/temporary_folder.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap::bench_odometry {
 namespace {
@@ -36,11 +36,11 @@ TEST(Child, CountsItsOwnTimeAndMemory) {
 }
 
 TEST(Child, ItsErrorIsOurs) {
-    EXPECT_EQ(error_of([] {
+    EXPECT_EQ(test::error_of([] {
                   run_in_child([]() -> nlohmann::json { throw std::invalid_argument("no such frame"); });
               }),
               "no such frame");
-    EXPECT_THAT(error_of([] {
+    EXPECT_THAT(test::error_of([] {
                     run_in_child([]() -> nlohmann::json {
                         std::raise(SIGKILL);
                         return 0;

@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "evaluate/evaluation.hpp"
-#include "sensor/simulator/simulated_source.hpp"
-#include "sensor/temporary_folder.hpp"
+#include "simulator/simulated_source.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap::bench_odometry {
 namespace {
@@ -17,14 +17,14 @@ using testing::HasSubstr;
 TEST(ParseMethods, NamesWhatThereIs) {
     EXPECT_EQ(parse_methods("paper,default").at(1).name, "default");
     EXPECT_TRUE(parse_methods("opencv-rgbd").at(0).slow);
-    EXPECT_THAT(error_of([] { parse_methods("default,orb"); }),
+    EXPECT_THAT(test::error_of([] { parse_methods("default,orb"); }),
                 AllOf(HasSubstr("\"orb\""), HasSubstr("default-no-graph"), HasSubstr("opencv-rgbdicp")));
-    EXPECT_NE(error_of([] { parse_methods(""); }), "");
+    EXPECT_NE(test::error_of([] { parse_methods(""); }), "");
 }
 
 TEST(RunMethod, EveryMethodFollowsAnEasyWalk) {
     const std::string input = "sim:office?width=320&height=240&frames=20";
-    const Trajectory truth = sim::SimulatedSource(sim::parse_simulator_name(input)).ground_truth();
+    const Trajectory truth = simulator::SimulatedSource(simulator::parse_simulator_name(input)).ground_truth();
     for (const MethodInfo& method : known_methods()) {
         std::int64_t seen = 0;
         const MethodRun run =
@@ -45,7 +45,7 @@ TEST(RunMethod, EveryMethodFollowsAnEasyWalk) {
 
 TEST(RunMethod, MissingInputIsNamed) {
     for (const char* method : {"default", "opencv-rgbd"}) {
-        EXPECT_THAT(error_of([&] { run_method(method, "/no/such/folder", 0, {}, [](std::int64_t) {}); }),
+        EXPECT_THAT(test::error_of([&] { run_method(method, "/no/such/folder", 0, {}, [](std::int64_t) {}); }),
                     HasSubstr("/no/such/folder"));
     }
 }

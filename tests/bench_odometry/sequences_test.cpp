@@ -4,8 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "sensor/simulator/simulated_source.hpp"
-#include "sensor/temporary_folder.hpp"
+#include "simulator/simulated_source.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap::bench_odometry {
 namespace {
@@ -25,15 +25,15 @@ std::vector<std::string> names_in(const std::filesystem::path& folder) {
 TEST(KnownSequences, AllSimulatedOnesCanBeRead) {
     for (const SequenceInfo& info : known_sequences()) {
         const std::string name = "sim:" + (info.simulator.empty() ? "office" : info.simulator);
-        EXPECT_NO_THROW(sim::parse_simulator_name(name)) << info.name;
+        EXPECT_NO_THROW(simulator::parse_simulator_name(name)) << info.name;
     }
-    EXPECT_THAT(error_of([] { parse_sequences("redkitchen,moon"); }),
+    EXPECT_THAT(test::error_of([] { parse_sequences("redkitchen,moon"); }),
                 AllOf(HasSubstr("\"moon\""), HasSubstr("sim:twins")));
     EXPECT_EQ(parse_sequences("sim:kt1,redkitchen").at(1).name, "redkitchen");
 }
 
 TEST(OpenSequence, RendersOnceAndKnowsTheTruthOfBothImages) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     const SequenceOptions options{folder.path(), folder.path() / "cache", 0};
     std::string missing;
     const auto open = [&](const SequenceInfo& info, const SequenceOptions& how) {

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "sensor/temporary_folder.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap::bench {
 namespace {
@@ -13,7 +13,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 
 TEST(Benchmark, FillsARowForEachMethodAndDrawsWhatItFound) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     BenchmarkOptions options;
     options.frames = 4;
     options.slow_frames = 2;
@@ -55,7 +55,7 @@ TEST(Benchmark, BadOptionsAreNamed) {
     options.frames = -1;
     options.slow_frames = 0;
     options.overlay_every = 0;
-    EXPECT_THAT(error_of([&] { Benchmark benchmark(options); }),
+    EXPECT_THAT(test::error_of([&] { Benchmark benchmark(options); }),
                 AllOf(HasSubstr("frames"), HasSubstr("slow-frames"), HasSubstr("overlay-every")));
 }
 

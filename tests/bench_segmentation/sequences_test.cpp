@@ -7,7 +7,7 @@
 #include "bench_segmentation/local_normals.hpp"
 #include "bench_segmentation/metrics.hpp"
 #include "data_folder.hpp"
-#include "sensor/temporary_folder.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap::bench {
 namespace {
@@ -41,9 +41,9 @@ TEST(EvenlySpread, CoversAll) {
 
 TEST(ParseSequences, UnknownNamesAreNamed) {
     EXPECT_EQ(parse_sequences("noise,redkitchen").size(), 2u);
-    EXPECT_THAT(error_of([] { parse_sequences("noise,attic"); }),
+    EXPECT_THAT(test::error_of([] { parse_sequences("noise,attic"); }),
                 AllOf(HasSubstr("attic"), HasSubstr("redkitchen")));
-    EXPECT_NE(error_of([] { parse_sequences(""); }), "");
+    EXPECT_NE(test::error_of([] { parse_sequences(""); }), "");
 }
 
 TEST(OpenSequence, MissingDataIsSaid) {

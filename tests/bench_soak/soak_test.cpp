@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "core/temporary_folder.hpp"
-#include "sensor/simulator/simulated_source.hpp"
+#include "temporary_folder.hpp"
+#include "simulator/simulated_source.hpp"
 #include "simulate/recording.hpp"
 
 namespace planemap::bench_soak {
@@ -27,7 +27,7 @@ TEST(Soak, GrowthIsFromTheFirstHalfHourToTheEnd) {
 TEST(Soak, ARoundGoesOnAndOn) {
     const test::TemporaryFolder folder;
     const std::string name = "sim:office?frames=40&width=160&height=120";
-    auto source = std::make_unique<sim::SimulatedSource>(sim::parse_simulator_name(name));
+    auto source = std::make_unique<simulator::SimulatedSource>(simulator::parse_simulator_name(name));
     Round round{folder.path() / "round.lcmlog", {}};
     for (const StampedPose& pose : source->ground_truth())
         round.world_from_camera.push_back(pose.world_from_camera);

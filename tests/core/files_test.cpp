@@ -10,7 +10,7 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "core/temporary_folder.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap {
 namespace {
@@ -29,7 +29,7 @@ std::string error_of(Call call) {
 }
 
 TEST(Files, BytesSurvive) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     std::string bytes;
     for (int i = 0; i < 100000; ++i) bytes.push_back(static_cast<char>(i * 31 % 256));
     write_file(folder / "a", bytes);
@@ -39,7 +39,7 @@ TEST(Files, BytesSurvive) {
 }
 
 TEST(Files, WritingLeavesNothingBeside) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     write_file(folder / "a", "one");
     write_file(folder / "a", "two");
     EXPECT_EQ(read_file(folder / "a"), "two");
@@ -48,7 +48,7 @@ TEST(Files, WritingLeavesNothingBeside) {
 }
 
 TEST(Files, FailureNamesTheFileAndKeepsTheOldOne) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     EXPECT_THAT(error_of([&] { read_file(folder / "missing"); }), HasSubstr("missing"));
     EXPECT_THAT(error_of([&] { read_file(folder.path()); }), HasSubstr("directory"));
     EXPECT_THAT(error_of([&] { write_file(folder / "none/a", "x"); }), HasSubstr("none/a"));
@@ -57,7 +57,7 @@ TEST(Files, FailureNamesTheFileAndKeepsTheOldOne) {
 }
 
 TEST(Files, APipeIsNotWaitedFor) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
     EXPECT_THAT(error_of([&] { read_file(folder / "pipe"); }), HasSubstr("not a regular file"));
     EXPECT_THAT(error_of([&] { read_file("/dev/zero"); }), HasSubstr("not a regular file"));
@@ -66,7 +66,7 @@ TEST(Files, APipeIsNotWaitedFor) {
 }
 
 TEST(Files, ADeviceIsWrittenToAndStaysWhatItIs) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     const std::filesystem::path pipe = folder / "pipe";
     ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
     const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
@@ -81,7 +81,7 @@ TEST(Files, ADeviceIsWrittenToAndStaysWhatItIs) {
 }
 
 TEST(Files, RefusesMoreThanTheLimit) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     write_file(folder / "a", "0123456789");
     EXPECT_EQ(read_file(folder / "a", 10).size(), 10u);
     EXPECT_THAT(error_of([&] { read_file(folder / "a", 9); }), HasSubstr("10 bytes"));

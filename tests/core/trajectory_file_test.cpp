@@ -10,7 +10,7 @@
 
 #include "core/files.hpp"
 #include "core/random_values.hpp"
-#include "core/temporary_folder.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap {
 namespace {
@@ -19,12 +19,12 @@ using test::TemporaryFolder;
 using testing::AllOf;
 using testing::HasSubstr;
 
-TrajectoryFile read_text(const TemporaryFolder& folder, const std::string& text) {
+TrajectoryFile read_text(const test::TemporaryFolder& folder, const std::string& text) {
     write_file(folder / "t.txt", text);
     return read_trajectory_file(folder / "t.txt");
 }
 
-std::string error_of(const TemporaryFolder& folder, const std::string& text) {
+std::string error_of(const test::TemporaryFolder& folder, const std::string& text) {
     try {
         read_text(folder, text);
     } catch (const std::runtime_error& error) {
@@ -83,7 +83,7 @@ void expect_same(const Trajectory& read, const Trajectory& written, bool stamps 
 }
 
 TEST(TrajectoryFile, TimestampsOfEveryUnitAreExact) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     for (const char* unit : {".", "ms", "", "000"}) {
         const TrajectoryFile file = read_text(folder, stamped(some_poses(), unit, ' ', false));
         EXPECT_EQ(file.format, TrajectoryFormat::kTum) << unit;
@@ -92,7 +92,7 @@ TEST(TrajectoryFile, TimestampsOfEveryUnitAreExact) {
 }
 
 TEST(TrajectoryFile, EurocByItsHeader) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     const std::string lines = stamped(some_poses(), "000", ',', true);
     for (const char* header :
          {"#timestamp [ns],p_x,p_y,p_z,q_w,q_x,q_y,q_z\n",
@@ -108,7 +108,7 @@ TEST(TrajectoryFile, EurocByItsHeader) {
 }
 
 TEST(TrajectoryFile, EurocsStateHas17Columns) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     std::string lines;
     std::istringstream in(stamped(some_poses(), "000", ',', true));
     for (std::string line; std::getline(in, line);) lines += line + ",1,2,3,4,5,6,7,8,9\n";
@@ -122,7 +122,7 @@ TEST(TrajectoryFile, EurocsStateHas17Columns) {
 }
 
 TEST(TrajectoryFile, AHeaderSaysTheOrderWhereverItStands) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     const Trajectory poses = some_poses();
     expect_same(
         read_text(folder, "# timestamp tx ty tz qw qx qy qz\n" + stamped(poses, ".", ' ', true)).poses,
@@ -145,7 +145,7 @@ TEST(TrajectoryFile, AHeaderSaysTheOrderWhereverItStands) {
 }
 
 TEST(TrajectoryFile, KittiHasNoTimestamps) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     std::string text;
     for (const StampedPose& pose : some_poses()) {
         const Eigen::Matrix<double, 3, 4, Eigen::RowMajor> m = pose.world_from_camera.matrix().topRows<3>();
@@ -166,7 +166,7 @@ TEST(TrajectoryFile, KittiHasNoTimestamps) {
 }
 
 TEST(TrajectoryFile, OtherFormsAreRefusedByNameAndLine) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     const auto zeros = [](int count) {
         std::string line = "1";
         for (int i = 1; i < count; ++i) line += " 0";
@@ -183,7 +183,7 @@ TEST(TrajectoryFile, OtherFormsAreRefusedByNameAndLine) {
 }
 
 TEST(TrajectoryFile, LinesOfDifferentFormsAreRefused) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     const std::string tum = "1 0 0 0 0 0 0 1\n", kitti = "1 0 0 0 0 1 0 0 0 0 1 0\n";
     EXPECT_THAT(error_of(folder, tum + kitti), HasSubstr("t.txt:2: 12 numbers"));
     EXPECT_THAT(error_of(folder, kitti + tum), HasSubstr("t.txt:2: 8 numbers"));

@@ -8,7 +8,7 @@
 
 #include "core/files.hpp"
 #include "core/random_values.hpp"
-#include "core/temporary_folder.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap {
 namespace {
@@ -16,12 +16,12 @@ namespace {
 using test::TemporaryFolder;
 using testing::HasSubstr;
 
-Trajectory read_text(const TemporaryFolder& folder, const std::string& text) {
+Trajectory read_text(const test::TemporaryFolder& folder, const std::string& text) {
     write_file(folder / "t.txt", text);
     return read_trajectory(folder / "t.txt");
 }
 
-std::string error_of(const TemporaryFolder& folder, const std::string& text) {
+std::string error_of(const test::TemporaryFolder& folder, const std::string& text) {
     try {
         read_text(folder, text);
     } catch (const std::runtime_error& error) {
@@ -31,7 +31,7 @@ std::string error_of(const TemporaryFolder& folder, const std::string& text) {
 }
 
 TEST(Trajectory, WrittenAndReadBack) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     test::Random random(1);
     Trajectory trajectory;
     for (int i = 0; i < 100; ++i) trajectory.push_back({1311868164363181 + i * 33333, random.pose()});
@@ -48,7 +48,7 @@ TEST(Trajectory, WrittenAndReadBack) {
 }
 
 TEST(Trajectory, ExtremeValuesSurvive) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     Trajectory trajectory(3);
     trajectory[0].utime = -1500000;
     trajectory[1].utime = -5;
@@ -63,7 +63,7 @@ TEST(Trajectory, ExtremeValuesSurvive) {
 }
 
 TEST(Trajectory, CommentsBlankLinesCommasAndLineEndings) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     const Trajectory trajectory = read_text(
         folder, "# a comment\r\n\n   \t\r\n  # another\n2.5 1 2 3 0 0 0 1\r\n1.25,4,5,6,0,0,0.6,0.8 extra\n");
     ASSERT_EQ(trajectory.size(), 2u);
@@ -75,7 +75,7 @@ TEST(Trajectory, CommentsBlankLinesCommasAndLineEndings) {
 }
 
 TEST(Trajectory, StampsMayBeInAnyUnitAndAreExact) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     for (const char* text : {"\xef\xbb\xbf"
                              "1311868164.363181 1 2 3 0 0 0 1\n1311868164.396514 1 2 3 0 0 0 1\n",
                              "1311868164363181000 1 2 3 0 0 0 1\n1311868164396514000 1 2 3 0 0 0 1\n",
@@ -90,7 +90,7 @@ TEST(Trajectory, StampsMayBeInAnyUnitAndAreExact) {
 }
 
 TEST(Trajectory, HostileLinesAreNamed) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     const std::string good = "1 0 0 0 0 0 0 1\n";
     for (const std::string bad :
          {"1 2 3", "1 0 0 0 0 0 0", "1 nan 0 0 0 0 0 1", "inf 0 0 0 0 0 0 1", "1 0 0 x 0 0 0 1",
@@ -118,7 +118,7 @@ TEST(PoseAt, InterpolatesOnlyOverSmallGaps) {
 }
 
 TEST(Trajectory, MissingFileIsNamed) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     try {
         read_trajectory(folder / "missing.txt");
         FAIL();

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "core/files.hpp"
-#include "core/temporary_folder.hpp"
+#include "temporary_folder.hpp"
 #include "core/version.hpp"
 
 namespace planemap {
@@ -98,7 +98,7 @@ TEST(Flags, Version) {
 }
 
 TEST(Flags, DumpedConfigReadsBack) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     const Outcome given =
         parse({"sim:office?frames=60&seed=7", "--output", "a \"folder\" # with, [all] \\ 'kinds'",
                "--map-merge-distance-m", "0.1", "--map-max-points", "-7", "--map-seed",
@@ -128,7 +128,7 @@ TEST(Flags, DumpsAllOptionsWithoutTheRequiredOnes) {
 }
 
 TEST(Flags, ConfigFilesAreReadLineByLine) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     const auto with = [&](const std::string& text) {
         write_file(folder / "c.ini", text);
         return parse({"in", "-o", "x", "--config", folder / "c.ini"});

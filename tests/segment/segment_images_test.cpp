@@ -10,7 +10,7 @@
 #include "core/files.hpp"
 #include "segment/small_scene.hpp"
 #include "sensor/png.hpp"
-#include "sensor/temporary_folder.hpp"
+#include "temporary_folder.hpp"
 #include "sensor/test_images.hpp"
 
 namespace planemap {
@@ -31,7 +31,7 @@ class SegmentImages : public testing::Test {
         return nlohmann::json::parse(read_file(options.output / name));
     }
 
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     const CameraInfo camera = small_camera();
     const std::filesystem::path image = folder.write("a.png", encode_depth_png(small_depth()));
     SegmentImagesOptions options{{}, folder.path() / "out", 0, false, true, {}};
@@ -94,7 +94,7 @@ TEST_F(SegmentImages, AnImageWithoutReadingsHasNoRegions) {
 
 TEST_F(SegmentImages, TwoImagesOfOneNameAreRefusedBeforeAnythingIsDone) {
     const auto twin = folder.write("other/a.png", encode_depth_png(small_depth()));
-    EXPECT_THAT(error_of([&] {
+    EXPECT_THAT(test::error_of([&] {
                     segment({image, twin});
                 }),
                 AllOf(HasSubstr(image.string()), HasSubstr(twin.string())));
@@ -124,13 +124,13 @@ TEST_F(SegmentImages, AnEarlierRunsResultsAreReplacedAndOthersImagesAreNot) {
 
 TEST_F(SegmentImages, BadOptionsAreNamed) {
     options.repeat = -1;
-    EXPECT_THAT(error_of([&] { segment({}); }), AllOf(HasSubstr("repeat"), HasSubstr("images")));
+    EXPECT_THAT(test::error_of([&] { segment({}); }), AllOf(HasSubstr("repeat"), HasSubstr("images")));
     options.repeat = 0;
     options.segmentation.method = "hough";
-    EXPECT_THAT(error_of([&] { segment({image}); }), HasSubstr("method"));
+    EXPECT_THAT(test::error_of([&] { segment({image}); }), HasSubstr("method"));
     options.segmentation.method = "cells";
     options.output = image / "below a file";
-    EXPECT_THAT(error_of([&] { segment({image}); }), HasSubstr("below a file"));
+    EXPECT_THAT(test::error_of([&] { segment({image}); }), HasSubstr("below a file"));
 }
 
 TEST_F(SegmentImages, ABadCameraIsNamedByField) {
@@ -138,7 +138,7 @@ TEST_F(SegmentImages, ABadCameraIsNamedByField) {
     bad.depth.fx = 0;
     bad.depth.cy = std::numeric_limits<double>::quiet_NaN();
     options.images = {image};
-    EXPECT_THAT(error_of([&] { segment_images(options, bad); }), AllOf(HasSubstr("fx"), HasSubstr("cy")));
+    EXPECT_THAT(test::error_of([&] { segment_images(options, bad); }), AllOf(HasSubstr("fx"), HasSubstr("cy")));
 }
 
 TEST(TakeFiles, TellsFilesFromFlagsAndTheirValues) {

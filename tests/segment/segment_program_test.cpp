@@ -8,7 +8,7 @@
 
 #include "core/files.hpp"
 #include "segment/small_scene.hpp"
-#include "sensor/temporary_folder.hpp"
+#include "temporary_folder.hpp"
 #include "sensor/test_images.hpp"
 
 namespace planemap {
@@ -39,7 +39,7 @@ class SegmentProgram : public testing::Test {
     }
     bool exists(const char* name) const { return std::filesystem::exists(folder.path() / name); }
 
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     const std::filesystem::path camera = folder.write("camera.json", small_camera_json());
     const std::filesystem::path first = folder.write("a.png", encode_depth_png(small_depth()));
     const std::filesystem::path second = folder.write("b.png", encode_depth_png(small_depth()));

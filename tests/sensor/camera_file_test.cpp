@@ -6,7 +6,7 @@
 
 #include "core/sensor_preset.hpp"
 #include "data_folder.hpp"
-#include "sensor/temporary_folder.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap {
 namespace {
@@ -22,7 +22,7 @@ constexpr const char* kColor =
     R"("color_camera": {"width": 1280, "height": 960, "fx": 1050, "fy": 1050, "cx": 640, "cy": 480})";
 
 CameraInfo read(const std::string& text) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     return read_camera_file(folder.write("camera.json", text));
 }
 
@@ -51,7 +51,7 @@ TEST(CameraFile, EveryKeyIsRead) {
 }
 
 TEST(CameraFile, AllBadValuesAreInOneError) {
-    const std::string error = error_of([] {
+    const std::string error = test::error_of([] {
         read(R"({"depth_camera": {"width": 640.5, "height": 0, "fx": -3, "fy": "big", "cx": null},
                  "depth_units_per_metre": 0, "registered": "no", "depth_range_m": [3, 1], "serial": 7,
                  "noise": {"base_m": -1}})");
@@ -68,7 +68,7 @@ TEST(CameraFile, AllBadValuesAreInOneError) {
 
 TEST(CameraFile, ResolutionsTooFarApartAreRefusedByNameAndFile) {
     // A phone's LiDAR beside its full-size photographs.
-    const std::string error = error_of([] {
+    const std::string error = test::error_of([] {
         read(R"({"depth_camera": {"width": 256, "height": 192, "fx": 212, "fy": 212, "cx": 128, "cy": 96},
                  "color_camera": {"width": 1920, "height": 1440, "fx": 1590, "fy": 1590, "cx": 960, "cy": 720},
                  "depth_units_per_metre": 1000, "registered": true})");
@@ -79,10 +79,10 @@ TEST(CameraFile, ResolutionsTooFarApartAreRefusedByNameAndFile) {
 }
 
 TEST(CameraFile, UnregisteredNeedsBothCamerasAndTheTransform) {
-    const std::string error = error_of(
+    const std::string error = test::error_of(
         [] { read(std::string(kDepth) + R"(, "depth_units_per_metre": 1000, "registered": false})"); });
     EXPECT_THAT(error, AllOf(HasSubstr("color_camera is missing"), HasSubstr("color_from_depth is missing")));
-    const std::string lists = error_of([] {
+    const std::string lists = test::error_of([] {
         read(std::string(kDepth) + ", " + kColor + R"(, "depth_units_per_metre": 1000,
              "color_from_depth": {"rotation_vector_rad": [0, 0], "translation_m": [0, "x", 0]}})");
     });
@@ -92,7 +92,7 @@ TEST(CameraFile, UnregisteredNeedsBothCamerasAndTheTransform) {
 
 TEST(CameraFile, WhatIsNotJsonIsNamedWithAnExample) {
     for (const char* text : {"", "{", "[1, 2]", "\xfe", "nonsense"}) {
-        EXPECT_THAT(error_of([&] { read(text); }), AllOf(HasSubstr("camera.json"), HasSubstr("depth_camera")))
+        EXPECT_THAT(test::error_of([&] { read(text); }), AllOf(HasSubstr("camera.json"), HasSubstr("depth_camera")))
             << text;
     }
 }
@@ -104,7 +104,7 @@ std::string with(const std::string& more) {
 }
 
 TEST(CameraFile, UnknownKeysAreErrorsWithTheNearestOne) {
-    const std::string error = error_of([] {
+    const std::string error = test::error_of([] {
         read(R"({"depth_camera": {"width": 640, "height": 480, "fx": 585, "fy": 580, "cx": 320, "cz": 240},
                  "colour_camera": {}, "depth_units_per_meter": 1000, "zzz": 1, "noise": {"base": 0.001}})");
     });
@@ -115,7 +115,7 @@ TEST(CameraFile, UnknownKeysAreErrorsWithTheNearestOne) {
                      HasSubstr("noise.base is not a known key, must be base_m"),
                      HasSubstr("zzz is not a known key, must be one of sensor, serial"),
                      HasSubstr("depth_units_per_metre is missing"), HasSubstr("depth_camera.cy is missing")));
-    EXPECT_THAT(error_of([] {
+    EXPECT_THAT(test::error_of([] {
                     read(with(R"("color_from_depth": {"rotation_vector_rad": [0, 0, 0],
                                             "translation": [0, 0, 0]}, "registered": true)"));
                 }),
@@ -123,7 +123,7 @@ TEST(CameraFile, UnknownKeysAreErrorsWithTheNearestOne) {
                       HasSubstr("color_from_depth.translation_m is missing")));
     std::string many = "\"\\u001b[2J\": 1";
     for (int i = 0; i < 1000; ++i) many += ", \"key" + std::to_string(i) + "\": 1";
-    const std::string bounded = error_of([&] { read(with(many)); });
+    const std::string bounded = test::error_of([&] { read(with(many)); });
     EXPECT_THAT(bounded, AllOf(HasSubstr("993 more unknown keys"), Not(HasSubstr("\x1b"))));
     EXPECT_LT(bounded.size(), 3000u);
 }
@@ -147,9 +147,9 @@ TEST(CameraFile, AbsurdValuesAreRefusedWithWhatIsAllowed) {
         {R"("noise": {"base_m": "NaN"})", "noise.base_m is \"NaN\""},
     };
     for (const auto& [more, expected] : cases) {
-        EXPECT_THAT(error_of([&] { read(with(more)); }), HasSubstr(expected)) << more;
+        EXPECT_THAT(test::error_of([&] { read(with(more)); }), HasSubstr(expected)) << more;
     }
-    const std::string camera = error_of([] {
+    const std::string camera = test::error_of([] {
         read(R"({"depth_camera": {"width": 640, "height": 480, "fx": 1e9, "fy": 1e-3, "cx": 1e5, "cy": -1e5},
                  "depth_units_per_metre": 1e-9})");
     });
@@ -163,9 +163,9 @@ TEST(CameraFile, AbsurdValuesAreRefusedWithWhatIsAllowed) {
 }
 
 TEST(CameraFile, SyntaxErrorsHaveLineAndColumn) {
-    EXPECT_THAT(error_of([] { read("{\n \"depth_camera\": {,}\n}"); }),
+    EXPECT_THAT(test::error_of([] { read("{\n \"depth_camera\": {,}\n}"); }),
                 HasSubstr("camera.json: line 2, column 19: syntax error"));
-    EXPECT_THAT(error_of([] { read(with("\"depth_units_per_metre\": 5000")); }), HasSubstr("stands twice"));
+    EXPECT_THAT(test::error_of([] { read(with("\"depth_units_per_metre\": 5000")); }), HasSubstr("stands twice"));
 }
 
 TEST(CameraFile, APresetGivesRangeAndNoise) {
@@ -190,17 +190,17 @@ TEST(CameraFile, WhatTheFileSaysOverridesThePreset) {
 
 TEST(CameraFile, AnUnknownPresetListsAllAndTheNearest) {
     EXPECT_THAT(
-        error_of([] { read(with(R"("sensor": "kinect_v2")")); }),
+        test::error_of([] { read(with(R"("sensor": "kinect_v2")")); }),
         HasSubstr(
             "sensor is \"kinect_v2\", must be one of kinect1, xtion, kinect2, azure_kinect, d435, l515, "
             "lidar_phone; the nearest is kinect2"));
-    EXPECT_THAT(error_of([] { read(with(R"("sensor": "zed")")); }), Not(HasSubstr("nearest")));
-    EXPECT_THAT(error_of([] { read(with(R"("sensor": "")")); }), HasSubstr("must be one of kinect1"));
-    EXPECT_THAT(error_of([] { read(with(R"("sensor": 1)")); }), HasSubstr("sensor is 1"));
+    EXPECT_THAT(test::error_of([] { read(with(R"("sensor": "zed")")); }), Not(HasSubstr("nearest")));
+    EXPECT_THAT(test::error_of([] { read(with(R"("sensor": "")")); }), HasSubstr("must be one of kinect1"));
+    EXPECT_THAT(test::error_of([] { read(with(R"("sensor": 1)")); }), HasSubstr("sensor is 1"));
 }
 
 TEST(CameraFile, WhatIsKnownButNotUsedIsNoted) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     std::vector<std::string> notes;
     const auto file = folder.write("camera.json", with(R"("note": "hello", "poses_of": "color_camera")"));
     read_camera_file(file, &notes);
@@ -229,7 +229,7 @@ TEST(CameraFile, EveryOneOfTheSharedDataIsRead) {
 }
 
 TEST(CameraFile, TumFoldersAreKnown) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     const auto desk = folder.path() / "rgbd_dataset_freiburg1_desk", other = folder.path() / "other";
     std::filesystem::create_directories(desk);
     std::filesystem::create_directories(other);
@@ -239,15 +239,15 @@ TEST(CameraFile, TumFoldersAreKnown) {
     EXPECT_EQ(tum_camera("rgbd_dataset_freiburg2_xyz")->depth.cx, 325.1);
     EXPECT_EQ(tum_camera("rgbd_dataset_freiburg3_cabinet")->depth.fy, 539.2);
     EXPECT_FALSE(tum_camera("freiburg4"));
-    EXPECT_THAT(error_of([&] { camera_of_folder(other); }),
+    EXPECT_THAT(test::error_of([&] { camera_of_folder(other); }),
                 AllOf(HasSubstr("other/camera.json"), HasSubstr("\"depth_units_per_metre\": 1000")));
 }
 
 TEST(CameraFile, TheExampleOfTheErrorIsComplete) {
-    const std::string error = error_of([] { camera_of_folder("/nonexistent"); });
+    const std::string error = test::error_of([] { camera_of_folder("/nonexistent"); });
     const auto start = error.find('{');
     ASSERT_NE(start, std::string::npos);
-    EXPECT_EQ(error_of([&] { read(error.substr(start)); }), "");
+    EXPECT_EQ(test::error_of([&] { read(error.substr(start)); }), "");
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 
 #include <cstdlib>
 
-#include "sensor/temporary_folder.hpp"
+#include "temporary_folder.hpp"
 #include "sensor/test_images.hpp"
 
 namespace planemap {
@@ -21,7 +21,7 @@ constexpr const char* kCamera = R"({"depth_camera": {"width": 16, "height": 12, 
     "cy": 6}, "depth_units_per_metre": 1000})";
 
 /// A folder with a camera and two depth images, `depth/1.png` and `depth/2.png`.
-struct Folder : TemporaryFolder {
+struct Folder : test::TemporaryFolder {
     Folder() {
         write("camera.json", kCamera);
         write("depth/1.png", encode_depth_png(numbered_depth(16, 12)));
@@ -222,33 +222,33 @@ TEST(Dataset, PngColorIsDecoded) {
 }
 
 TEST(Dataset, NothingToReadIsOneClearError) {
-    const TemporaryFolder empty;
-    EXPECT_THAT(error_of([&] { open_source((empty.path() / "none").string()); }),
+    const test::TemporaryFolder empty;
+    EXPECT_THAT(test::error_of([&] { open_source((empty.path() / "none").string()); }),
                 HasSubstr("no such folder"));
-    EXPECT_THAT(error_of([&] { open_source(empty.path().string()); }), HasSubstr("depth.txt"));
+    EXPECT_THAT(test::error_of([&] { open_source(empty.path().string()); }), HasSubstr("depth.txt"));
     const auto file = empty.write("file", "x");
-    EXPECT_THAT(error_of([&] { open_source(file.string()); }), HasSubstr("not a folder"));
+    EXPECT_THAT(test::error_of([&] { open_source(file.string()); }), HasSubstr("not a folder"));
     const Folder folder;
     folder.write("depth.txt", "# nothing\n");
-    EXPECT_THAT(error_of([&] { open_source(folder.path().string()); }), HasSubstr("no depth images"));
+    EXPECT_THAT(test::error_of([&] { open_source(folder.path().string()); }), HasSubstr("no depth images"));
 }
 
 TEST(Dataset, WhatToDoIsSaid) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     const auto log = folder.write("x.lcmlog", std::string("\xed\xa1\xda\x01", 4) + "and so on");
-    EXPECT_THAT(error_of([&] { open_source(log.string()); }),
+    EXPECT_THAT(test::error_of([&] { open_source(log.string()); }),
                 AllOf(HasSubstr("x.lcmlog: not a folder but an LCM log"), HasSubstr("planemap-run"),
                       HasSubstr("lcm-logplayer")));
     const auto list = folder.write("in/depth.txt", "1 depth/1.png\n");
-    EXPECT_THAT(error_of([&] { open_source(list.string()); }), HasSubstr("give the folder that it lies in"));
-    EXPECT_THAT(error_of([&] { open_source(folder.write("a.bag", "#ROSBAG V2.0").string()); }),
+    EXPECT_THAT(test::error_of([&] { open_source(list.string()); }), HasSubstr("give the folder that it lies in"));
+    EXPECT_THAT(test::error_of([&] { open_source(folder.write("a.bag", "#ROSBAG V2.0").string()); }),
                 HasSubstr("not a folder; give one with"));
-    EXPECT_THAT(error_of([&] { open_source(folder.path().string()); }), HasSubstr("/in is one"));
+    EXPECT_THAT(test::error_of([&] { open_source(folder.path().string()); }), HasSubstr("/in is one"));
     const auto loop = folder.path() / "loop";
     std::filesystem::create_symlink(loop, loop);
-    EXPECT_THAT(error_of([&] { open_source(loop.string()); }), HasSubstr("symbolic links"));
+    EXPECT_THAT(test::error_of([&] { open_source(loop.string()); }), HasSubstr("symbolic links"));
     std::filesystem::create_symlink(loop, folder.path() / "associations.txt");
-    EXPECT_THAT(error_of([&] { open_source(folder.path().string()); }),
+    EXPECT_THAT(test::error_of([&] { open_source(folder.path().string()); }),
                 AllOf(HasSubstr("associations.txt"), HasSubstr("symbolic links")));
 }
 
@@ -257,12 +257,12 @@ TEST(Dataset, BadListsNameTheLine) {
          {"1.0 depth/1.png\nx depth/2.png\n", "1.0 a\n2.0\n", "1 a\ninf b\n", "1 a\n1e30 b\n"}) {
         const Folder folder;
         folder.write("depth.txt", text);
-        EXPECT_THAT(error_of([&] { Dataset{folder.path()}; }), HasSubstr("depth.txt:2")) << text;
+        EXPECT_THAT(test::error_of([&] { Dataset{folder.path()}; }), HasSubstr("depth.txt:2")) << text;
     }
     for (const char* text : {"1 rgb/1.jpg 1 rgb/2.jpg\n", "1 depth/a 1 depth/b\n", "1 rgb/a depth/b\n"}) {
         const Folder folder;
         folder.write("associations.txt", text);
-        EXPECT_THAT(error_of([&] { Dataset{folder.path()}; }), HasSubstr("associations.txt:1")) << text;
+        EXPECT_THAT(test::error_of([&] { Dataset{folder.path()}; }), HasSubstr("associations.txt:1")) << text;
     }
 }
 

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "sensor/temporary_folder.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap {
 namespace {
@@ -15,7 +15,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 List<ListedImage> read(const std::string& text) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     return read_image_list(folder.write("depth.txt", text));
 }
 
@@ -49,7 +49,7 @@ TEST(ImageList, EveryWayToWriteALineIsRead) {
 }
 
 TEST(ImageList, NamesMayHoldBlanks) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     folder.write("my scan/1 a.png", "x");
     folder.write("b.png", "x");
     // Behind a name that is a file as it is, more columns may stand, as some tools write them.
@@ -73,24 +73,24 @@ TEST(ImageList, AnyUnitIsReadExactly) {
 }
 
 TEST(ImageList, MixedUnitsAndWhatIsNotFiniteAreErrors) {
-    EXPECT_THAT(error_of([] { read("1311868164.3 a\n1311868164396514000 b\n"); }),
+    EXPECT_THAT(test::error_of([] { read("1311868164.3 a\n1311868164396514000 b\n"); }),
                 AllOf(HasSubstr("depth.txt:2:"), HasSubstr("is in nanoseconds"), HasSubstr("is in seconds")));
     for (const char* bad :
          {"nan a", "inf a", "-inf a", "1e400 a", "1e30 a", "a 1", "1", "1 ", "1,", "\x01"}) {
-        EXPECT_THAT(error_of([&] { read(std::string("1 a\n# c\n") + bad + "\n"); }),
+        EXPECT_THAT(test::error_of([&] { read(std::string("1 a\n# c\n") + bad + "\n"); }),
                     HasSubstr("depth.txt:3:"))
             << bad;
     }
-    const std::string hostile = error_of([] { read(std::string(100000, 'x') + "\x1b[2J"); });
+    const std::string hostile = test::error_of([] { read(std::string(100000, 'x') + "\x1b[2J"); });
     EXPECT_LT(hostile.size(), 500u);
-    EXPECT_THAT(error_of([] { read(std::string("\xff\xfe\x31\0", 4)); }), HasSubstr("UTF-16"));
+    EXPECT_THAT(test::error_of([] { read(std::string("\xff\xfe\x31\0", 4)); }), HasSubstr("UTF-16"));
 }
 
 TEST(ImageList, AStepThatIsNoCamerasIsRefused) {
     const auto at_steps = [](double step_s) {
         std::string text;
         for (int i = 0; i < 5; ++i) text += std::to_string(i * step_s) + " a" + std::to_string(i) + "\n";
-        return error_of([&] { read(text); });
+        return test::error_of([&] { read(text); });
     };
     EXPECT_EQ(at_steps(0.001), "");
     EXPECT_EQ(at_steps(60), "");
@@ -98,9 +98,9 @@ TEST(ImageList, AStepThatIsNoCamerasIsRefused) {
                 AllOf(HasSubstr("depth.txt"), HasSubstr("is 0.0009 s if they are in seconds"),
                       HasSubstr("1 ms to 60 s")));
     EXPECT_THAT(at_steps(33333.333), HasSubstr("33333.3 s"));
-    EXPECT_THAT(error_of([] { read("1 a\n1 b\n1 c\n2 d\n"); }), HasSubstr("is 0 s")) << "whole seconds";
-    EXPECT_EQ(error_of([] { read("1 a\n1.03 b\n500 c\n500.03 d\n"); }), "") << "a pause";
-    EXPECT_EQ(error_of([] { read("5 a\n"); }), "") << "one image has no step";
+    EXPECT_THAT(test::error_of([] { read("1 a\n1 b\n1 c\n2 d\n"); }), HasSubstr("is 0 s")) << "whole seconds";
+    EXPECT_EQ(test::error_of([] { read("1 a\n1.03 b\n500 c\n500.03 d\n"); }), "") << "a pause";
+    EXPECT_EQ(test::error_of([] { read("5 a\n"); }), "") << "one image has no step";
 }
 
 TEST(ImageList, OrderAndRepeatsAreSetRightAndSaid) {
@@ -116,7 +116,7 @@ TEST(ImageList, OrderAndRepeatsAreSetRightAndSaid) {
 }
 
 TEST(Associations, AreReadAsTheListsAre) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     folder.write("run 2 b/depth 1.png", "x");
     folder.write("run 2 b/rgb 1.png", "x");
     const auto list = read_associations(folder.write(
@@ -130,7 +130,7 @@ TEST(Associations, AreReadAsTheListsAre) {
     EXPECT_EQ(list.entries[1].color->file, "run 2 b/rgb 1.png");
     EXPECT_EQ(list.entries[1].color->utime, 2000000000000000) << "each column may have its unit";
     EXPECT_THAT(list.notes, ElementsAre(HasSubstr("out of order")));
-    EXPECT_THAT(error_of([&] {
+    EXPECT_THAT(test::error_of([&] {
                     read_associations(folder.write("associations.txt", "1 a 1 depth/a\n2e6 a 2e6 depth/b\n"));
                 }),
                 HasSubstr("the median step"));

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "sensor/temporary_folder.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap {
 namespace {
@@ -14,12 +14,12 @@ using testing::HasSubstr;
 using testing::Not;
 
 std::string error_for(const std::string& text) {
-    const TemporaryFolder folder;
-    return error_of([&] { read_json_object(folder.write("a.json", text)); });
+    const test::TemporaryFolder folder;
+    return test::error_of([&] { read_json_object(folder.write("a.json", text)); });
 }
 
 TEST(JsonFile, AnObjectIsRead) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     EXPECT_EQ(read_json_object(
                   folder.write("a.json", "\xef\xbb\xbf{\"a\": [{\"b\": 1}, {\"b\": 2}]}\r\n"))["a"][1]["b"],
               2);

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "core/files.hpp"
-#include "sensor/temporary_folder.hpp"
+#include "temporary_folder.hpp"
 #include "sensor/test_images.hpp"
 
 namespace planemap {
@@ -18,7 +18,7 @@ using testing::HasSubstr;
 TEST(Png, DepthComesBackExactly) {
     const DepthImage depth = numbered_depth(37, 21);
     EXPECT_EQ(decode_depth_png(encode_depth_png(depth), 37, 21).pixels, depth.pixels);
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     write_depth_png(folder.path() / "a.png", depth);
     EXPECT_EQ(decode_depth_png(read_file(folder.path() / "a.png"), 37, 21).pixels, depth.pixels);
 }
@@ -30,7 +30,7 @@ TEST(Png, ColorComesBackExactly) {
         color.pixels[i] = {value, static_cast<std::uint8_t>(value + 50),
                            static_cast<std::uint8_t>(value + 100)};
     }
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     write_color_png(folder.path() / "a.png", color);
     EXPECT_EQ(decode_color_png(read_file(folder.path() / "a.png"), 5, 3).pixels, color.pixels);
 }
@@ -52,27 +52,27 @@ TEST(Png, EveryEightBitColorTypeIsConverted) {
 
 TEST(Png, WrongTypesAndSizesAreNamed) {
     const std::string depth = encode_depth_png(numbered_depth(8, 6));
-    EXPECT_THAT(error_of([&] { decode_depth_png(depth, 8, 7); }), HasSubstr("8x6"));
+    EXPECT_THAT(test::error_of([&] { decode_depth_png(depth, 8, 7); }), HasSubstr("8x6"));
     const std::string byte = encode_png(8, 6, SPNG_COLOR_TYPE_GRAYSCALE, 8, std::vector<std::uint8_t>(48));
-    EXPECT_THAT(error_of([&] { decode_depth_png(byte, 8, 6); }), HasSubstr("8-bit greyscale"));
+    EXPECT_THAT(test::error_of([&] { decode_depth_png(byte, 8, 6); }), HasSubstr("8-bit greyscale"));
     const std::string rgb = encode_png(8, 6, SPNG_COLOR_TYPE_TRUECOLOR, 8, std::vector<std::uint8_t>(144));
-    EXPECT_THAT(error_of([&] { decode_depth_png(rgb, 8, 6); }), HasSubstr("RGB"));
-    EXPECT_THAT(error_of([&] { decode_color_png(depth, 8, 6); }), HasSubstr("has 16"));
-    EXPECT_THAT(error_of([&] { decode_depth_png("", 8, 6); }), HasSubstr("not a PNG"));
-    EXPECT_THAT(error_of([&] { decode_depth_png("JFIF and so on", 8, 6); }), HasSubstr("not a PNG"));
+    EXPECT_THAT(test::error_of([&] { decode_depth_png(rgb, 8, 6); }), HasSubstr("RGB"));
+    EXPECT_THAT(test::error_of([&] { decode_color_png(depth, 8, 6); }), HasSubstr("has 16"));
+    EXPECT_THAT(test::error_of([&] { decode_depth_png("", 8, 6); }), HasSubstr("not a PNG"));
+    EXPECT_THAT(test::error_of([&] { decode_depth_png("JFIF and so on", 8, 6); }), HasSubstr("not a PNG"));
 }
 
 TEST(Png, AHugeSizeInTheHeaderAllocatesNothing) {
     std::string png = encode_depth_png(numbered_depth(8, 6));
     for (std::size_t i = 16; i < 24; ++i) png[i] = '\x7f';  // width and height, the checksum left as it was
-    EXPECT_NE(error_of([&] { decode_depth_png(png, 0x7f7f7f7f, 0x7f7f7f7f); }), "");
+    EXPECT_NE(test::error_of([&] { decode_depth_png(png, 0x7f7f7f7f, 0x7f7f7f7f); }), "");
 }
 
 TEST(Png, EveryTruncationIsAnError) {
     const std::string png = encode_depth_png(numbered_depth(16, 12));
     constexpr std::size_t kChecksum = 4;  // the end marker's may be missing
     for (std::size_t size = 0; size < png.size() - kChecksum; ++size) {
-        EXPECT_NE(error_of([&] { decode_depth_png(std::string_view(png).substr(0, size), 16, 12); }), "")
+        EXPECT_NE(test::error_of([&] { decode_depth_png(std::string_view(png).substr(0, size), 16, 12); }), "")
             << size;
     }
 }

@@ -12,7 +12,7 @@
 
 #include "messages/log.hpp"
 #include "messages/tcpq_server.hpp"
-#include "sensor/temporary_folder.hpp"
+#include "temporary_folder.hpp"
 #include "shell_fixture.hpp"
 
 namespace planemap {
@@ -131,7 +131,7 @@ TEST_F(SensorShellTest, PublishesEveryFrameInEveryEncoding) {
 }
 
 TEST_F(SensorShellTest, OnASharedBusFramesTellTheirSender) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     const auto first_frame = [&](const std::string& url) {
         const std::filesystem::path file = folder.path() / "sensor.lcmlog";
         {

@@ -4,7 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "sensor/temporary_folder.hpp"
+#include "temporary_folder.hpp"
+#include "simulator/simulated_source.hpp"
 
 namespace planemap {
 namespace {
@@ -26,6 +27,23 @@ TEST(OpenSource, RefusesWhatItDoesNotKnow) {
     EXPECT_THROW(open_source("sim:moon"), std::invalid_argument);
     EXPECT_THROW(open_source(""), std::runtime_error);
     EXPECT_THROW(open_source(std::string(10000, 'x')), std::exception);
+}
+
+TEST(OpenSource, SomeFramesOfTheSimulator) {
+    const std::string name = "sim:office?frames=8&width=80&height=60";
+    const auto all = open_source(name), some = open_source(name, {.frames = {3, 6}});
+    EXPECT_EQ(some->size(), 3u);
+    SensorFrame expected, frame;
+    for (int i = 0; i < 8; ++i) {
+        all->next(expected);
+        if (i < 3 || i >= 6) continue;
+        ASSERT_EQ(some->next(frame).status, ReadResult::Status::kFrame);
+        EXPECT_EQ(frame.utime, expected.utime);
+        EXPECT_EQ(frame.depth.pixels, expected.depth.pixels);
+    }
+    EXPECT_EQ(some->next(frame).status, ReadResult::Status::kEnd);
+    EXPECT_EQ(dynamic_cast<const simulator::SimulatedSource&>(*some).ground_truth().size(), 3u);
+    EXPECT_THROW(open_source(name, {.frames = {8, {}}}), std::invalid_argument);
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "core/files.hpp"
-#include "core/temporary_folder.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap {
 namespace {
@@ -16,7 +16,7 @@ using test::TemporaryFolder;
 using testing::HasSubstr;
 
 TEST(OutputFile, AnEarlierFileStaysUntilTheNewOneIsWhole) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     write_file(folder / "rows.json", "[1, 2, 3]");
     {
         OutputFile output(folder / "rows.json");
@@ -30,7 +30,7 @@ TEST(OutputFile, AnEarlierFileStaysUntilTheNewOneIsWhole) {
 }
 
 TEST(OutputFile, WhatAFailureLeavesIsKeptAndSaid) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     write_file(folder / "rows.json", "[1, 2, 3]");
     testing::internal::CaptureStderr();
     try {
@@ -56,7 +56,7 @@ TEST(OutputFile, WhatAFailureLeavesIsKeptAndSaid) {
 }
 
 TEST(OutputFile, WhatCannotBeWrittenIsAnErrorAtOnce) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     const auto error_of = [](const std::filesystem::path& file) -> std::string {
         try {
             const OutputFile output(file);
@@ -65,11 +65,11 @@ TEST(OutputFile, WhatCannotBeWrittenIsAnErrorAtOnce) {
         }
         return "";
     };
-    EXPECT_THAT(error_of(folder.path()), HasSubstr("is a folder"));
-    EXPECT_THAT(error_of(folder.path() / ""), HasSubstr("is a folder"));
-    EXPECT_THAT(error_of("/proc/nowhere/rows.json"), HasSubstr("/proc/nowhere"));
-    EXPECT_EQ(error_of("-"), "");
-    EXPECT_EQ(error_of(""), "");
+    EXPECT_THAT(test::error_of(folder.path()), HasSubstr("is a folder"));
+    EXPECT_THAT(test::error_of(folder.path() / ""), HasSubstr("is a folder"));
+    EXPECT_THAT(test::error_of("/proc/nowhere/rows.json"), HasSubstr("/proc/nowhere"));
+    EXPECT_EQ(test::error_of("-"), "");
+    EXPECT_EQ(test::error_of(""), "");
     OutputFile device("/dev/full");
     EXPECT_THROW(device.finish("[]"), std::runtime_error);
 }

@@ -13,7 +13,7 @@
 #include <stdexcept>
 
 #include "core/files.hpp"
-#include "core/temporary_folder.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap {
 namespace {
@@ -58,7 +58,7 @@ int in_child(const std::function<int()>& body) {
 }
 
 TEST(ResultFolder, ReplacesEarlierResultsTogetherAndNothingElse) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     write_file(folder / "notes.txt", "foreign");
     for (const std::string& name : kNames) write_file(folder / name, "old");
     {
@@ -77,7 +77,7 @@ TEST(ResultFolder, ReplacesEarlierResultsTogetherAndNothingElse) {
 }
 
 TEST(ResultFolder, ReplacesSomeNamesWhereOnlyTheyAreMeant) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     for (const std::string& name : kNames) write_file(folder / name, "old");
     ResultFolder results(folder.path(), kNames);
     results.make(text("a", "new"));
@@ -88,7 +88,7 @@ TEST(ResultFolder, ReplacesSomeNamesWhereOnlyTheyAreMeant) {
 }
 
 TEST(ResultFolder, WhatFailsLeavesWhatWasThere) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     write_file(folder / "a", "old");
     ResultFolder results(folder.path(), kNames);
     results.make(text("a", "draft"));
@@ -102,7 +102,7 @@ TEST(ResultFolder, WhatFailsLeavesWhatWasThere) {
 }
 
 TEST(ResultFolder, ResultsThatWentAwayReplaceNothing) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     for (const std::string& name : kNames) write_file(folder / name, "old");
     ResultFolder results(folder.path(), kNames);
     for (const std::string& name : kNames) results.make(text(name, "new"));
@@ -112,7 +112,7 @@ TEST(ResultFolder, ResultsThatWentAwayReplaceNothing) {
 }
 
 TEST(ResultFolder, ASecondRunIsRefusedWhileTheFirstLives) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     int ready[2];
     ASSERT_EQ(::pipe(ready), 0);
     const pid_t first = ::fork();
@@ -133,7 +133,7 @@ TEST(ResultFolder, ASecondRunIsRefusedWhileTheFirstLives) {
 }
 
 TEST(ResultFolder, WhatARunLeftIsKeptAndDoesNotPileUp) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     for (int run = 0; run < 9; ++run) {
         EXPECT_EQ(in_child([&] {
                       ResultFolder results(folder.path(), kNames);
@@ -156,7 +156,7 @@ TEST(ResultFolder, WhatARunLeftIsKeptAndDoesNotPileUp) {
 }
 
 TEST(ResultFolder, LeftoversThatCanBeMadeAgainAreRemoved) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     std::filesystem::create_directories(folder / ".a.part");
     write_file(folder / ".a.part/a", "half");
     ResultFolder results(folder.path(), {"a"}, ".a.part", ResultFolder::Leftovers::kRemove);
@@ -166,7 +166,7 @@ TEST(ResultFolder, LeftoversThatCanBeMadeAgainAreRemoved) {
 
 /// Whenever a run is killed, the next one finds results that belong together.
 TEST(ResultFolder, AKillAtAnyMomentMixesNothing) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     for (int round = 0; round < 40; ++round) {
         const pid_t child = ::fork();
         if (child == 0) {
@@ -195,7 +195,7 @@ TEST(ResultFolder, AKillAtAnyMomentMixesNothing) {
 }
 
 TEST(ResultFolder, PutsInPlaceWhatAKillInterrupted) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     write_file(folder / "a", "new");  // moved already
     write_file(folder / "b", "old");
     write_file(folder / "c", "old");
@@ -210,7 +210,7 @@ TEST(ResultFolder, PutsInPlaceWhatAKillInterrupted) {
 }
 
 TEST(ResultFolder, AFolderThatWentAwayIsMadeAgain) {
-    const TemporaryFolder parent;
+    const test::TemporaryFolder parent;
     const std::filesystem::path folder = parent / "out";
     ResultFolder results(folder, kNames);
     results.make(text("a", "interim"));
@@ -222,7 +222,7 @@ TEST(ResultFolder, AFolderThatWentAwayIsMadeAgain) {
 }
 
 TEST(ResultFolder, AFolderThatAnotherRunTookIsLeftToIt) {
-    const TemporaryFolder parent;
+    const test::TemporaryFolder parent;
     const std::filesystem::path folder = parent / "out";
     ResultFolder first(folder, kNames);
     std::filesystem::remove_all(folder);
@@ -237,7 +237,7 @@ TEST(ResultFolder, AFolderThatAnotherRunTookIsLeftToIt) {
 }
 
 TEST(ResultFolder, WhatCanBeSeenAtTheStartIsSeenThen) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     std::filesystem::create_directories(folder / "b");
     EXPECT_THAT(error_of([&] { ResultFolder(folder.path(), kNames); }), HasSubstr("b: is a folder"));
     write_file(folder / "file", "x");

@@ -10,7 +10,7 @@
 #include "bench_map/run.hpp"
 #include "messages/convert.hpp"
 #include "run/input.hpp"
-#include "sensor/simulator/simulated_source.hpp"
+#include "simulator/simulated_source.hpp"
 
 namespace planemap::bench_map {
 
@@ -83,14 +83,14 @@ std::optional<double> Growth::cost_ratio() const {
 }
 
 std::int64_t frames_a_round(const std::string& simulator_name) {
-    const sim::SimulatorOptions options = sim::parse_simulator_name(simulator_name);
+    const simulator::SimulatorOptions options = simulator::parse_simulator_name(simulator_name);
     if (options.visits > 0 || !options.trajectory.empty())
         throw std::invalid_argument(simulator_name + ": --growth needs a walk that goes round");
-    const sim::SimulatedSource source(options);
-    sim::HandOptions hand;
+    const simulator::SimulatedSource source(options);
+    simulator::HandOptions hand;
     hand.speed_m_s = options.speed_m_s;
     hand.turn_deg_s = options.turn_deg_s;
-    return std::lround(sim::tour_duration(source.world().tour, hand, options.seed) * options.rate_hz);
+    return std::lround(simulator::tour_duration(source.world().tour, hand, options.seed) * options.rate_hz);
 }
 
 Growth measure_growth(const std::string& simulator_name, std::int64_t frames, PipelineOptions options,

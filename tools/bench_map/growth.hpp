@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "run/pipeline.hpp"
+#include "pipeline/pipeline.hpp"
 
 namespace planemap::bench_map {
 

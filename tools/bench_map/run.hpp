@@ -8,7 +8,7 @@
 
 #include "map/map.hpp"
 #include "run/coverage.hpp"
-#include "run/pipeline.hpp"
+#include "pipeline/pipeline.hpp"
 
 namespace planemap::bench_map {
 

@@ -6,7 +6,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "sensor/simulator/simulated_source.hpp"
+#include "simulator/simulated_source.hpp"
 
 namespace planemap::bench_map {
 
@@ -57,7 +57,7 @@ std::optional<std::string> input_of(const std::string& sequence, const std::file
                                     std::string& missing) {
     if (sequence == "sim:building") return kBuilding;
     if (sequence.starts_with("sim:")) {
-        sim::parse_simulator_name(sequence);  // an error now, not in an hour
+        simulator::parse_simulator_name(sequence);  // an error now, not in an hour
         return sequence;
     }
     for (const std::filesystem::path& path : {data / sequence, std::filesystem::path(sequence)})
@@ -68,11 +68,11 @@ std::optional<std::string> input_of(const std::string& sequence, const std::file
 
 std::optional<std::vector<TruePlane>> true_planes(const std::string& input, std::int64_t frames) {
     if (!input.starts_with("sim:")) return std::nullopt;
-    const sim::SimulatedSource source(sim::parse_simulator_name(input));
+    const simulator::SimulatedSource source(simulator::parse_simulator_name(input));
     Sight sight;
     sight.min_m = source.camera().depth_min_m;
     sight.max_m = source.camera().depth_max_m;
-    sight.max_angle_deg = sim::DepthSensorOptions().grazing_from_deg;
+    sight.max_angle_deg = simulator::DepthSensorOptions().grazing_from_deg;
     const auto all = static_cast<std::int64_t>(*source.size());
     const std::int64_t count = frames > 0 ? std::min(frames, all) : all;
     TruthCollector truth(source.world());

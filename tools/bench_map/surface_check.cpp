@@ -8,7 +8,7 @@
 #include "bench_map/true_poses.hpp"
 #include "messages/channels.hpp"
 #include "messages/frame_decoder.hpp"
-#include "run/given_poses.hpp"
+#include "pipeline/given_poses.hpp"
 #include "run/input.hpp"
 
 namespace planemap::bench_map {

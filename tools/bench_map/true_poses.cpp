@@ -4,7 +4,7 @@
 #include <Eigen/SVD>
 #include <algorithm>
 
-#include "run/given_poses.hpp"
+#include "pipeline/given_poses.hpp"
 
 namespace planemap::bench_map {
 

@@ -76,10 +76,10 @@ Eigen::Vector3d TruePlane::centre() const {
     return world_from_plane * Eigen::Vector3d(c.x(), c.y(), 0);
 }
 
-TruthCollector::TruthCollector(const sim::World& world) {
-    for (const sim::Surface& surface : world.surfaces) surface_names_.push_back(surface.name);
+TruthCollector::TruthCollector(const simulator::World& world) {
+    for (const simulator::Surface& surface : world.surfaces) surface_names_.push_back(surface.name);
     std::vector<std::vector<Eigen::Vector3d>> corners;  // of each group
-    for (const sim::Rectangle& rectangle : world.rectangles) {
+    for (const simulator::Rectangle& rectangle : world.rectangles) {
         const Plane& plane = world.surfaces[static_cast<std::size_t>(rectangle.surface)].plane;
         const auto same = std::find_if(groups_.begin(), groups_.end(), [&](const Group& group) {
             return same_plane(group.plane, plane, rectangle.centre);
@@ -118,13 +118,13 @@ TruthCollector::TruthCollector(const sim::World& world) {
     }
 }
 
-void TruthCollector::add(const sim::View& view, const Sight& sight) {
+void TruthCollector::add(const simulator::View& view, const Sight& sight) {
     for (std::size_t i = 0; i < groups_.size(); ++i)
         look(groups_[i], static_cast<std::int16_t>(i), view, sight);
 }
 
-void TruthCollector::look(Group& group, std::int16_t index, const sim::View& view, const Sight& sight) const {
-    const sim::View& v = view;
+void TruthCollector::look(Group& group, std::int16_t index, const simulator::View& view, const Sight& sight) const {
+    const simulator::View& v = view;
     const Pose camera_from_plane = view.world_from_camera.inverse(Eigen::Isometry) * group.world_from_plane;
     const Eigen::Vector3d eye = camera_from_plane.inverse(Eigen::Isometry).translation();  // on the plane
     const double widest = std::max(v.camera.cx, v.camera.width - 1 - v.camera.cx) / v.camera.fx;

@@ -7,7 +7,7 @@
 
 #include "bench_map/plane_raster.hpp"
 #include "core/plane.hpp"
-#include "sensor/simulator/renderer.hpp"
+#include "simulator/renderer.hpp"
 
 namespace planemap::bench_map {
 
@@ -35,11 +35,11 @@ struct Sight {
 /// or meet in a doorway.)
 class TruthCollector {
   public:
-    explicit TruthCollector(const sim::World& world);
+    explicit TruthCollector(const simulator::World& world);
 
     /// Adds what one exact view shows. Each cell of a plane is looked up in the view, so that no pixel is too
     /// small or too large for the raster.
-    void add(const sim::View& view, const Sight& sight);
+    void add(const simulator::View& view, const Sight& sight);
 
     /// The planes seen so far, by plane and then from the largest part to the smallest.
     std::vector<TruePlane> planes() const;
@@ -52,7 +52,7 @@ class TruthCollector {
         std::vector<std::int16_t> surfaces;  ///< of each visible cell
     };
 
-    void look(Group& group, std::int16_t index, const sim::View& view, const Sight& sight) const;
+    void look(Group& group, std::int16_t index, const simulator::View& view, const Sight& sight) const;
 
     std::vector<std::string> surface_names_;
     std::vector<std::int16_t> surface_of_rectangle_, group_of_rectangle_;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bench_odometry/run.hpp"
-#include "run/pipeline.hpp"
+#include "pipeline/pipeline.hpp"
 
 namespace planemap::bench_odometry {
 

@@ -8,7 +8,7 @@
 #include "bench_odometry/child.hpp"
 #include "benchmark/choices.hpp"
 #include "results/result_folder.hpp"
-#include "sensor/simulator/simulated_source.hpp"
+#include "simulator/simulated_source.hpp"
 #include "simulate/recording.hpp"
 
 namespace planemap::bench_odometry {
@@ -19,7 +19,7 @@ namespace {
 constexpr const char* kHandHeld = "office?blur=4&jitter=0.009";
 
 /// The true poses at the frames' depth and colour times: a method may give its pose for either.
-Trajectory true_poses(const sim::SimulatedSource& source) {
+Trajectory true_poses(const simulator::SimulatedSource& source) {
     Trajectory truth;
     for (std::size_t i = 0; i < *source.size(); ++i) {
         for (const std::int64_t utime : {source.utime(i), source.color_utime(i)})
@@ -51,7 +51,7 @@ class Fingerprint {
 };
 
 /// What tells this simulation from others: its parameters, poses and three frames.
-std::string fingerprint_of(const std::string& name, const sim::SimulatedSource& source) {
+std::string fingerprint_of(const std::string& name, const simulator::SimulatedSource& source) {
     static_assert(sizeof(Rgb) == 3);
     Fingerprint fingerprint;
     fingerprint.add(std::vector<char>(name.begin(), name.end()));
@@ -81,7 +81,7 @@ void remove_outdated(const std::filesystem::path& cache, const std::string& pref
 std::filesystem::path render(const SequenceInfo& info, const std::string& simulator,
                              const SequenceOptions& options,
                              const std::function<void(std::int64_t)>& on_frame) {
-    auto source = std::make_unique<sim::SimulatedSource>(sim::parse_simulator_name(simulator));
+    auto source = std::make_unique<simulator::SimulatedSource>(simulator::parse_simulator_name(simulator));
     const std::string prefix = info.name.substr(info.name.find(':') + 1) + "~";
     const std::string stem = prefix + fingerprint_of(info.simulator, *source);
     const auto size = static_cast<std::int64_t>(*source->size());

@@ -15,7 +15,7 @@
 #include "sensor/camera_file.hpp"
 #include "sensor/dataset.hpp"
 #include "sensor/png.hpp"
-#include "sensor/simulator/simulated_source.hpp"
+#include "simulator/simulated_source.hpp"
 
 namespace planemap::bench {
 
@@ -32,7 +32,7 @@ std::optional<Pose> pose_near(const Trajectory& truth, std::int64_t utime) {
         return it != truth.end() && std::abs(it->utime - utime) <= kMaxPoseGap_us;
     };
     if (!near(after) && (after == truth.begin() || !near(std::prev(after)))) return std::nullopt;
-    return sim::pose_at(truth, utime);
+    return simulator::pose_at(truth, utime);
 }
 
 /// Decodes an image of the depth camera's size; errors name the file.
@@ -109,9 +109,9 @@ Sequence open_labelled(const std::filesystem::path& folder, std::size_t frames) 
 
 /// For each surface of a world the first one on the same plane (within 1 mm and 0.06 deg) that faces the same
 /// way: two cupboards in a row show one plane.
-std::vector<std::size_t> first_on_same_plane(const sim::World& world) {
+std::vector<std::size_t> first_on_same_plane(const simulator::World& world) {
     std::vector<std::size_t> first;
-    for (const sim::Surface& surface : world.surfaces) {
+    for (const simulator::Surface& surface : world.surfaces) {
         const auto same = std::find_if(world.surfaces.begin(), world.surfaces.end(), [&](const auto& other) {
             return angle_between(surface.plane.normal, other.plane.normal) < 1e-3 &&
                    std::abs(surface.plane.d - other.plane.d) < 1e-3;
@@ -121,12 +121,12 @@ std::vector<std::size_t> first_on_same_plane(const sim::World& world) {
     return first;
 }
 
-Truth truth_of_view(const sim::World& world, const sim::View& view, const DepthImage& depth,
+Truth truth_of_view(const simulator::World& world, const simulator::View& view, const DepthImage& depth,
                     const CameraInfo& camera) {
     const std::vector<std::size_t> first = first_on_same_plane(world);
     const Pose camera_from_world = view.world_from_camera.inverse();
     std::vector<Plane> planes;
-    for (const sim::Surface& surface : world.surfaces) planes.push_back(camera_from_world * surface.plane);
+    for (const simulator::Surface& surface : world.surfaces) planes.push_back(camera_from_world * surface.plane);
     Image<std::uint16_t> surfaces(depth.width, depth.height);
     for (std::size_t i = 0; i < surfaces.pixels.size(); ++i) {
         const int rectangle = view.rectangle.pixels[i];
@@ -140,9 +140,9 @@ Truth truth_of_view(const sim::World& world, const sim::View& view, const DepthI
 /// The rendered room, 30 s of a hand-held walk through it.
 Sequence open_office(std::size_t frames) {
     const auto source =
-        std::make_shared<const sim::SimulatedSource>(sim::parse_simulator_name("sim:office?frames=900"));
+        std::make_shared<const simulator::SimulatedSource>(simulator::parse_simulator_name("sim:office?frames=900"));
     const auto load = [source](std::size_t index) {
-        const sim::View view = source->depth_view(index);
+        const simulator::View view = source->depth_view(index);
         BenchFrame frame;
         frame.depth = source->frame(index).depth;
         frame.world_from_depth = view.world_from_camera;
@@ -239,15 +239,15 @@ CameraInfo kinect_camera() {
     return camera;
 }
 
-BenchFrame render_frame(const sim::World& world, const CameraInfo& camera, const Pose& world_from_camera,
+BenchFrame render_frame(const simulator::World& world, const CameraInfo& camera, const Pose& world_from_camera,
                         bool noise, std::uint64_t seed) {
-    const sim::View view = sim::render_view(world, camera.depth, world_from_camera);
-    sim::DepthSensorOptions options;
+    const simulator::View view = simulator::render_view(world, camera.depth, world_from_camera);
+    simulator::DepthSensorOptions options;
     options.noise = noise;
     options.max_m = camera.depth_max_m;
-    const sim::GaussianTable gaussian;
+    const simulator::GaussianTable gaussian;
     BenchFrame frame;
-    frame.depth = sim::sense_depth(world, view, options, gaussian, seed);
+    frame.depth = simulator::sense_depth(world, view, options, gaussian, seed);
     frame.world_from_depth = world_from_camera;
     frame.truth = truth_of_view(world, view, frame.depth, camera);
     return frame;

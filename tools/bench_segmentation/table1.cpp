@@ -95,7 +95,7 @@ nlohmann::ordered_json to_json(const Table1Row& row) {
 BenchFrame wall_scene(double distance_m, std::uint64_t seed, const CameraInfo& camera) {
     using Eigen::Vector3d;
     const Vector3d east = Vector3d::UnitX(), north = Vector3d::UnitY(), down = -Vector3d::UnitZ();
-    sim::WorldBuilder builder("wall", seed, 8);
+    simulator::WorldBuilder builder("wall", seed, 8);
     builder.add_panel("wall", {-4, 0, 3}, east, down, 8, 3, {});
     builder.add_panel("floor", {-4, 0, 0}, east, -north, 8, 6, {});
     builder.add_box("box", {{0.45, -0.4, 0}, east, -down}, {0.3, 0.4, 0.95}, {}, {}, {});

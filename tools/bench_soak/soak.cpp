@@ -19,7 +19,7 @@
 #include "messages/decode.hpp"
 #include "messages/frame_decoder.hpp"
 #include "messages/log.hpp"
-#include "sensor/simulator/simulated_source.hpp"
+#include "simulator/simulated_source.hpp"
 #include "simulate/recording.hpp"
 
 namespace planemap::bench_soak {
@@ -144,9 +144,9 @@ class Observer {
 }  // namespace
 
 Round render_round(const std::string& simulator_name, const std::filesystem::path& folder) {
-    sim::SimulatorOptions options = sim::parse_simulator_name(simulator_name);
+    simulator::SimulatorOptions options = simulator::parse_simulator_name(simulator_name);
     options.frames = static_cast<int>(bench_map::frames_a_round(simulator_name));
-    auto source = std::make_unique<sim::SimulatedSource>(options);
+    auto source = std::make_unique<simulator::SimulatedSource>(options);
     Round round{folder / "round.lcmlog", {}};
     for (int i = 0; i < options.frames; ++i)
         round.world_from_camera.push_back(

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/trajectory.hpp"
-#include "run/pipeline.hpp"
+#include "pipeline/pipeline.hpp"
 
 namespace planemap::bench_soak {
 

@@ -8,7 +8,7 @@
 
 #include "evaluate/evaluation.hpp"
 #include "run/input.hpp"
-#include "run/pipeline.hpp"
+#include "pipeline/pipeline.hpp"
 
 namespace planemap {
 

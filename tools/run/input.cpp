@@ -16,7 +16,7 @@
 #include "messages/log.hpp"
 #include "run/log_contents.hpp"
 #include "sensor/sensor_shell.hpp"
-#include "sensor/simulator/simulated_source.hpp"
+#include "simulator/simulated_source.hpp"
 
 namespace planemap {
 
@@ -50,17 +50,17 @@ class SensorInput : public Input {
     }
 
     std::optional<Trajectory> truth() const override {
-        if (const auto* simulated = dynamic_cast<const sim::SimulatedSource*>(&shell_.source()))
+        if (const auto* simulated = dynamic_cast<const simulator::SimulatedSource*>(&shell_.source()))
             return simulated->ground_truth();
         return truth_;
     }
     std::vector<Result> truth_results() const override {
-        const auto* simulated = dynamic_cast<const sim::SimulatedSource*>(&shell_.source());
+        const auto* simulated = dynamic_cast<const simulator::SimulatedSource*>(&shell_.source());
         if (simulated == nullptr) return {};
         return {
             {"groundtruth.txt", [=](const auto& file) { write_trajectory(file, simulated->ground_truth()); }},
             {"planes_truth.json",
-             [=](const auto& file) { sim::write_planes_truth(file, simulated->world()); }}};
+             [=](const auto& file) { simulator::write_planes_truth(file, simulated->world()); }}};
     }
 
   private:

@@ -13,7 +13,7 @@
 #include "core/trajectory.hpp"
 #include "messages/bus.hpp"
 #include "results/result_folder.hpp"
-#include "sensor/frame_range.hpp"
+#include "core/frame_range.hpp"
 
 namespace planemap {
 

@@ -7,7 +7,7 @@
 
 #include "messages/module_status.hpp"
 #include "run/outputs.hpp"
-#include "run/pipeline.hpp"
+#include "pipeline/pipeline.hpp"
 
 namespace planemap {
 

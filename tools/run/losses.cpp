@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "run/pipeline.hpp"
+#include "pipeline/pipeline.hpp"
 
 namespace planemap {
 

@@ -8,7 +8,7 @@
 #include "run/input.hpp"
 #include "run/interim.hpp"
 #include "run/outputs.hpp"
-#include "run/pipeline.hpp"
+#include "pipeline/pipeline.hpp"
 #include "run/progress.hpp"
 #include "run/report.hpp"
 #include "run/run_info.hpp"

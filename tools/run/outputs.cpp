@@ -12,7 +12,7 @@
 #include "run/accuracy.hpp"
 #include "run/input.hpp"
 #include "run/losses.hpp"
-#include "run/pipeline.hpp"
+#include "pipeline/pipeline.hpp"
 #include "run/report.hpp"
 #include "run/size_report.hpp"
 #include "run/warnings.hpp"

@@ -10,7 +10,7 @@
 
 #include "messages/process.hpp"
 #include "run/input.hpp"
-#include "run/pipeline.hpp"
+#include "pipeline/pipeline.hpp"
 
 namespace planemap {
 

@@ -9,7 +9,7 @@
 
 #include "messages/convert.hpp"
 #include "run/coverage.hpp"
-#include "run/pipeline.hpp"
+#include "pipeline/pipeline.hpp"
 #include "run/report_text.hpp"
 
 namespace planemap {

@@ -10,7 +10,7 @@
 #include "results/result_folder.hpp"
 #include "results/standard_output.hpp"
 #include "sensor/sensor_shell.hpp"
-#include "sensor/simulator/simulated_source.hpp"
+#include "simulator/simulated_source.hpp"
 #include "simulate/recording.hpp"
 
 namespace planemap {
@@ -52,11 +52,11 @@ struct Simulated {
 /// Makes log and truth in the folder's workspace, the truth first: it is there at once.
 Simulated make_results(const std::string& world, const SensorShellOptions& options, const std::string& log,
                        ResultFolder& results) {
-    auto source = std::make_unique<sim::SimulatedSource>(sim::parse_simulator_name(world));
+    auto source = std::make_unique<simulator::SimulatedSource>(simulator::parse_simulator_name(world));
     Simulated simulated;
     simulated.total = source->size().value_or(0);
     results.make({kTruth, [&](const auto& file) { write_trajectory(file, source->ground_truth()); }});
-    results.make({kPlanes, [&](const auto& file) { sim::write_planes_truth(file, source->world()); }});
+    results.make({kPlanes, [&](const auto& file) { simulator::write_planes_truth(file, source->world()); }});
     Bus bus("memq://");
     SensorShell sensor(bus, std::move(source), options);
     const auto show = [&](std::int64_t frames) {
@@ -73,7 +73,7 @@ Simulated make_results(const std::string& world, const SensorShellOptions& optio
 int simulate(const std::string& world, const std::filesystem::path& output,
              const SensorShellOptions& options) {
     catch_stop_signals();
-    sim::parse_simulator_name(world);  // a wrong name is seen before anything is touched
+    simulator::parse_simulator_name(world);  // a wrong name is seen before anything is touched
     const std::string log = log_name(output);
     const std::filesystem::path folder = output.parent_path().empty() ? "." : output.parent_path();
     refuse_foreign_truth(folder);
@@ -107,7 +107,7 @@ int main(int argc, char** argv) {
                           "PLANEMAP_CAMERA_INFO), with the exact poses\n"
                           "(groundtruth.txt, TUM format) and planes (planes_truth.json) beside it.\n"
                           "Example: planemap-simulate --output office/office.lcmlog\n" +
-                              planemap::sim::simulator_help());
+                              planemap::simulator::simulator_help());
     std::string world = "sim:office";
     std::filesystem::path output;
     planemap::SensorShellOptions options;

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/keyframe.hpp"
+#include "core/replacement.hpp"
+#include "core/trajectory.hpp"
+#include "graph/graph_shell.hpp"
+#include "map/map_shell.hpp"
+#include "messages/bus.hpp"
+#include "messages/frame_decoder.hpp"
+#include "octomap/octomap_shell.hpp"
+#include "odometry/odometry_shell.hpp"
+#include "pipeline/given_poses.hpp"
+#include "segmentation/segmentation_shell.hpp"
+
+namespace planemap {
+
+struct PipelineOptions {
+    SegmentationOptions segmentation;
+    OdometryOptions odometry;
+    GraphOptions graph;
+    MapShellOptions map;
+    OctomapOptions octomap;
+    bool with_graph = true;           ///< without it there is no map either
+    std::optional<Trajectory> poses;  ///< instead of the graph's
+    bool with_map = true;
+    bool with_octomap = true;
+    bool keep_estimates = true;        ///< of all frames, for trajectory(); without: of the newest only
+    std::optional<CameraInfo> camera;  ///< instead of what the bus says
+};
+
+/// All shells on one bus in one process: the same ones that run as processes, fed one frame after the other.
+/// With a memq:// bus nothing is lost, and the same input and options give the same result.
+class Pipeline {
+  public:
+    Pipeline(Bus& bus, const PipelineOptions& options);
+
+    /// Handles what was published until the bus is quiet.
+    void settle() { bus_.drain(); }
+    /// Handles what the shells still hold back, and brings all maps up to date.
+    void finish();
+
+    /// The newest estimate; nothing before the first frame.
+    const OdometryEstimate* latest() const { return estimates_.empty() ? nullptr : &estimates_.back(); }
+    /// One for each frame that reached the odometry, in order.
+    const std::vector<OdometryEstimate>& estimates() const { return estimates_; }
+    /// World poses of the keyframes: the graph's, or the given ones. Precondition: one of both.
+    const KeyframeTrajectory& keyframes() const;
+    /// World poses of all tracked frames after graph optimisation, at the moments that they are of; without
+    /// a graph their poses in the odom frame, with given poses these.
+    Trajectory trajectory() const;
+
+    /// Why most frames that were not tracked were not, as far as that is known: words to follow a colon.
+    std::string why_lost();
+
+    /// What went wrong on the bus, by its kind.
+    const Complaints& complaints() const { return bus_.complaints(); }
+    FrameDecoder& decoder() { return *decoder_; }
+    SegmentationShell& segmentation() { return segmentation_; }
+    OdometryShell& odometry() { return odometry_; }
+    GraphShell* graph() { return graph_.get(); }                    ///< nullptr without one
+    const GivenPoses* given_poses() { return given_poses_.get(); }  ///< nullptr without
+    MapShell& map() { return *map_; }  ///< precondition: with_map, and a graph or given poses
+    OctomapShell* octomap() { return octomap_.get(); }
+
+  private:
+    std::optional<Pose> keyframe_pose(int id) const;
+
+    Bus& bus_;
+    std::shared_ptr<FrameDecoder> decoder_;
+    SegmentationShell segmentation_;
+    OdometryShell odometry_;
+    std::unique_ptr<GraphShell> graph_;
+    std::unique_ptr<GivenPoses> given_poses_;
+    std::unique_ptr<MapShell> map_;
+    std::unique_ptr<OctomapShell> octomap_;
+    std::vector<OdometryEstimate> estimates_;
+    std::vector<KeyframePose> named_;      ///< by the graph's newest trajectory
+    std::map<int, Replacement> replaced_;  ///< keyframes that it no longer names
+};
+
+}  // namespace planemap

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+
+#include "core/trajectory.hpp"
+#include "simulator/path.hpp"
+#include "simulator/sensor_model.hpp"
+#include "core/frame_source.hpp"
+
+namespace planemap::simulator {
+
+/// What is simulated. In a name, "sim:WORLD?key=value&...", the keys stand in brackets.
+struct SimulatorOptions {
+    std::string world = "office";         ///< see world_names()
+    int frames = 0;                       ///< [frames] 0: 900, or the length of the trajectory or the visits
+    std::uint64_t seed = 1;               ///< [seed] of textures, walk and noise
+    double rate_hz = 30;                  ///< [rate] frames a second
+    int width = 640, height = 480;        ///< [width, height] of both images, 16 to 4096 pixels
+    bool noise = true;                    ///< [noise=0|1] of depth and colour
+    bool registered = true;               ///< [registered=0|1] 0: a depth camera of its own, 2.5 cm beside
+    double depth_units_per_metre = 1000;  ///< [units]
+    double depth_min_m = 0.5, depth_max_m = 4.0;  ///< [min, max]
+    double color_noise = 2.5;                     ///< [color_noise] standard deviation, of 255 levels
+    int blur_samples = 1;                         ///< [blur] views averaged for motion blur, 1 to 16; 1: none
+    double shutter_s = 0.015;                     ///< [shutter] exposure time of colour with motion blur
+    double color_jitter_s = 0;  ///< [jitter] colour is taken up to this much before or after depth
+    double exposure_drift = 0;  ///< [drift] brightness swings by this share, 0 to 0.5
+    double light = 1;           ///< [light] brightness, 0 (darkness: noise alone) to 1
+    double speed_m_s = 0.5;     ///< [speed] of the walk, when it does not turn
+    double turn_deg_s = 45;     ///< [turn] of the walk, when it stands
+    int visits = 0;          ///< [visits] instead of its tour, the walk visits the world's places in random
+                             ///< order, so many in all; 0: the tour
+    std::string trajectory;  ///< [trajectory] file of a recorded hand-held trajectory to follow, TUM
+                             ///< format, its world's y pointing down; empty: the world's own walk
+
+    /// Throws std::invalid_argument that names every bad field.
+    void validate() const;
+};
+
+/// The worlds there are.
+std::vector<std::string> world_names();
+
+/// For --help: the worlds, a line each, and the parameters that names take.
+std::string simulator_help();
+
+/// Reads "sim:WORLD?key=value&...". Throws std::invalid_argument for an unknown world or key (listing what
+/// there is), a value that is not a number, or one out of range.
+SimulatorOptions parse_simulator_name(const std::string& name);
+
+/// Frames of a simulated sensor in a simulated world, with the exact truth. Every frame depends on the
+/// options and its index alone.
+class SimulatedSource : public FrameSource {
+  public:
+    /// Throws std::invalid_argument for bad options, std::runtime_error if the trajectory cannot be read.
+    explicit SimulatedSource(const SimulatorOptions& options = {});
+
+    const CameraInfo& camera() const override { return camera_; }
+    std::optional<std::size_t> size() const override { return frame_count_ - first_; }
+    ReadResult next(SensorFrame& frame) override;
+    /// Leaves the others out; the numbers of frame() and utime() stay. Throws as frames_within().
+    void select(const FrameRange& range);
+
+    /// Frame i as sensed, in any order. Precondition: there is one.
+    SensorFrame frame(std::size_t i) const;
+    std::int64_t utime(std::size_t i) const;        ///< of its depth, microseconds
+    std::int64_t color_utime(std::size_t i) const;  ///< of its colour, microseconds
+    /// Exact pose of the colour camera at any time. World frame: z up.
+    Pose world_from_color(std::int64_t time_us) const { return pose_at(path_, time_us); }
+    /// Exact pose of the depth camera at any time; the colour camera's when registered.
+    Pose world_from_depth(std::int64_t time_us) const;
+    /// What the depth camera sees of frame i without noise or range.
+    View depth_view(std::size_t i) const;
+
+    const World& world() const { return world_; }
+    /// The colour camera's exact poses at the times of the selected frames, in order.
+    Trajectory ground_truth() const;
+
+  private:
+    void walk();
+    void follow_trajectory();
+    RgbImage color(std::size_t i, const View& depth_view) const;
+    double exposure_at(std::int64_t time_us) const;
+
+    SimulatorOptions options_;
+    World world_;
+    CameraInfo camera_;
+    DepthSensorOptions depth_options_;
+    GaussianTable gaussian_;
+    Trajectory path_;
+    std::size_t first_ = 0, frame_count_ = 0, next_ = 0;  ///< frame_count_: one after the last
+};
+
+/// Writes the exact planes as JSON: {"world": name, "planes": [{"id", "name", "normal": [x, y, z], "d",
+/// "area", "rectangles": [[4 corners]...]}]}; world frame (z up), metres, n.p + d = 0, normals towards the
+/// visible side, corners counter-clockwise about the normal. Pictures are left out: they cover other
+/// rectangles of their plane. Throws std::runtime_error naming the file.
+void write_planes_truth(const std::filesystem::path& file, const World& world);
+
+}  // namespace planemap::simulator
