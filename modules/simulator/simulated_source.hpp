@@ -6,6 +6,7 @@
 #include "core/trajectory.hpp"
 #include "simulator/path.hpp"
 #include "simulator/sensor_model.hpp"
+#include "core/frame_range.hpp"
 #include "core/frame_source.hpp"
 
 namespace planemap::simulator {
