@@ -46,8 +46,8 @@ class RunResults : public test::Programs {
         EXPECT_GT(read_trajectory(folder / "trajectory.txt").size(), 0u);
         EXPECT_GT(nlohmann::json::parse(read_file(folder / "planes.json")).at("planes").size(), 0u);
     }
-    /// A log of frames without a reading.
-    std::string dark_log() {
+    /// A log of frames without a reading, so far apart.
+    std::string dark_log(std::int64_t step_us = 33333) {
         CameraInfo camera;
         camera.depth = camera.color = {64, 48, 50, 50, 31.5, 23.5};
         LogWriter log(folder_ / "dark.lcmlog");
@@ -60,7 +60,7 @@ class RunResults : public test::Programs {
         write(channels::kCameraInfo, to_message(camera, 0, 0));
         for (int i = 0; i < 5; ++i) {
             bot_core::images_t images;
-            images.utime = 33333 * i;
+            images.utime = 1000000 + step_us * i;
             images.n_images = 1;
             images.image_types = {bot_core::images_t::DEPTH_MM_ZIPPED};
             images.images = {depth_image_message(DepthImage(64, 48), images.utime, DepthEncoding::kZipped)};
@@ -104,6 +104,10 @@ TEST_F(RunResults, AGoodMapIsNotReplacedByAnEmptyOne) {
     EXPECT_EQ(std::count(empty.err.begin(), empty.err.end(), '\n'), 1) << empty.err;
     EXPECT_TRUE(bytes_of("out") == good);
     EXPECT_EQ(aside("out"), "") << "there is nothing to keep";
+
+    // What is said is why: the depth of frames that are refused was not looked at.
+    const Outcome refused = run("planemap-run", dark_log(-33333) + " -o " + path("other"));
+    EXPECT_THAT(refused.err, HasSubstr("could be tracked: 4 frames whose stamp went back are not used"));
 
     // Tracked, but no planes: its trajectory is worth something.
     const Outcome bare = run("planemap-run",
