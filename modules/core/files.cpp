@@ -5,7 +5,6 @@
 
 #include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <fstream>
 #include <stdexcept>
 #include <system_error>
@@ -15,7 +14,7 @@ namespace planemap {
 namespace {
 
 [[noreturn]] void fail(const std::filesystem::path& file, const std::string& doing, int error) {
-    throw std::runtime_error(file.string() + ": cannot " + doing + ": " + std::strerror(error));
+    throw std::system_error(error, std::generic_category(), file.string() + ": cannot " + doing);
 }
 
 /// Writes and closes; with `sync`, waits until the bytes are on the disk. Returns errno's value, 0 if all is

@@ -12,7 +12,7 @@ std::string read_file(const std::filesystem::path& file, std::size_t max_bytes =
 
 /// Writes beside the target and renames, so a reader or a kill never leaves half a file. A device or pipe is
 /// written to as it is.
-/// Throws std::runtime_error naming file and reason.
+/// Throws std::system_error, a std::runtime_error, naming file and reason.
 void write_file(const std::filesystem::path& file, std::string_view bytes);
 
 }  // namespace planemap

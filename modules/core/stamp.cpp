@@ -140,4 +140,12 @@ std::int64_t StampColumn::read(std::string_view text) {
     return stamp->utime;
 }
 
+std::string date_text(std::time_t moment) {
+    std::tm utc = {};
+    ::gmtime_r(&moment, &utc);
+    char text[32];
+    std::strftime(text, sizeof(text), "%Y%m%d-%H%M%S", &utc);
+    return text;
+}
+
 }  // namespace planemap

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <ctime>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,6 +14,9 @@ enum class StampUnit { kSeconds, kMilliseconds, kMicroseconds, kNanoseconds };
 
 /// "seconds" and so on.
 const char* unit_name(StampUnit unit);
+
+/// A moment as names of files have it: 20261128-180501, UTC.
+std::string date_text(std::time_t moment);
 
 /// A moment as it was read.
 struct Stamp {

@@ -47,4 +47,14 @@ PlaneMap read_plane_map(const std::filesystem::path& file) {
     }
 }
 
+bool may_hold_planes(const std::filesystem::path& file) {
+    std::error_code ignored;
+    if (!std::filesystem::exists(file, ignored)) return false;
+    try {
+        return !read_plane_map(file).planes.empty();
+    } catch (const std::exception&) {
+        return true;
+    }
+}
+
 }  // namespace planemap

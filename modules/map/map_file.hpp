@@ -20,4 +20,8 @@ void write_plane_map(const std::filesystem::path& file, const PlaneMap& map);
 /// reason if the file cannot be read, holds no map, is cut short, or the map does not make sense.
 PlaneMap read_plane_map(const std::filesystem::path& file);
 
+/// True if there is a file that is worth more than a map without planes: also one that cannot be read as a
+/// map, since what it holds is not known.
+bool may_hold_planes(const std::filesystem::path& file);
+
 }  // namespace planemap

@@ -4,8 +4,11 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <stdexcept>
+#include <system_error>
 
+#include "map/earlier_map.hpp"
 #include "map/map_file.hpp"
 #include "messages/channels.hpp"
 #include "messages/convert.hpp"
@@ -17,6 +20,19 @@ namespace {
 constexpr std::int64_t kWritePeriodUs = 5000000;
 constexpr std::int64_t kRetryPeriodUs = 1000000;  ///< after a write that failed
 constexpr const char* kFile = "plane_map.lcmlog";
+
+/// Whether an error says that a disk has no room or fails, which may pass, and not that a path is wrong.
+bool is_disk_trouble(const std::error_code& error) {
+    for (const int trouble : {ENOSPC, EDQUOT, EFBIG, EIO, ESTALE, ENOMEM})
+        if (error.value() == trouble) return true;
+    return false;
+}
+
+void make_folder(const std::filesystem::path& folder) {
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error) throw std::system_error(error, folder.string() + ": cannot be made");
+}
 }  // namespace
 
 MapShell::MapShell(Bus& bus, const MapShellOptions& options)
@@ -25,14 +41,7 @@ MapShell::MapShell(Bus& bus, const MapShellOptions& options)
     tell_losses();
     status_.lost("fine edges of planes, since the map to start from is very large",
                  static_cast<std::int64_t>(mapper_.coarsened()));
-    if (!output_.empty()) {
-        // A folder that cannot be written shows now, not after the run. An earlier map stays until there is
-        // one.
-        std::filesystem::create_directories(output_);
-        if (!std::filesystem::exists(output_ / kFile)) write();
-        if (::access(output_.c_str(), W_OK) != 0)
-            throw std::runtime_error(output_.string() + ": is no folder that can be written to");
-    }
+    if (!output_.empty()) try_output();
     bus_.subscribe(channels::kKeyframe, status_.guard([this](const RawMessage& m) { on_keyframe(m); }), 256);
     bus_.subscribe(channels::kTrajectory, status_.guard([this](const RawMessage& m) { on_trajectory(m); }),
                    16);
@@ -113,7 +122,28 @@ void MapShell::finish() {
     mapper_.settle();
     if (mapper_.rebuilds() != rebuilds) publish();
     if (!output_.empty() && unwritten_) try_write();
+    if (!output_.empty() && !is_ours_ && write_error_.empty())
+        spdlog::info("{}: no planes came, so the earlier map stays", (output_ / kFile).string());
     if (!write_error_.empty()) throw std::runtime_error("the map could not be written: " + write_error_);
+}
+
+/// A folder that cannot be one shows now, not after the run; a disk that is full now may have room later.
+void MapShell::try_output() {
+    const std::filesystem::path file = output_ / kFile;
+    std::error_code ignored;
+    if (std::filesystem::is_directory(file, ignored))
+        throw std::runtime_error(file.string() + ": is a folder, where the map is to go");
+    try {
+        make_folder(output_);
+        if (!std::filesystem::exists(file)) write();
+    } catch (const std::system_error& error) {
+        if (!is_disk_trouble(error.code())) throw;
+        unwritten_ = true;
+        write_failed(error.what());
+        return;
+    }
+    if (::access(output_.c_str(), W_OK) != 0)
+        throw std::runtime_error(output_.string() + ": is no folder that can be written to");
 }
 
 /// A disk that is full or gone ends nothing: the map is kept, said not to be written, and tried again.
@@ -124,18 +154,36 @@ void MapShell::try_write() {
         write_error_.clear();
         if (failed_before) spdlog::info("{} is written again", (output_ / kFile).string());
     } catch (const std::exception& error) {
-        write_error_ = error.what();
-        last_write_us_ = now_us();
-        if (!failed_before) spdlog::warn("{}; the map is kept, trying every second", write_error_);
+        write_failed(error.what());
     }
     tell();
 }
 
+void MapShell::write_failed(const std::string& why) {
+    if (write_error_.empty()) spdlog::warn("{}; the map is kept, trying every second", why);
+    write_error_ = why;
+    last_write_us_ = now_us();
+    tell();
+}
+
 void MapShell::write() {
-    std::filesystem::create_directories(output_);  // somebody may have removed it
-    write_plane_map(output_ / kFile, mapper_.map());
+    make_folder(output_);  // somebody may have removed it
+    if (make_way()) write_plane_map(output_ / kFile, mapper_.map());
     last_write_us_ = now_us();
     unwritten_ = false;
+}
+
+/// Keeps what an earlier process left, under another name. False while there is nothing to write that is
+/// worth as much.
+bool MapShell::make_way() {
+    const std::filesystem::path file = output_ / kFile;
+    if (is_ours_ || !may_hold_planes(file)) return is_ours_ = true;
+    if (mapper_.map().planes.empty()) return false;
+    const KeptMap kept = keep_earlier_map(file);
+    spdlog::info("the earlier map is kept as {}", kept.file.string());
+    for (const std::filesystem::path& removed : kept.removed)
+        spdlog::info("{}: removed, the newest of its kind are kept", removed.string());
+    return is_ours_ = true;
 }
 
 }  // namespace planemap

@@ -16,13 +16,15 @@ struct MapShellOptions {
     std::filesystem::path
         start;  ///< plane_map.lcmlog to start from, see PlaneMapper::start_from(); empty: none
     /// Folder that plane_map.lcmlog is written to (beside and renamed), every few seconds and at the end;
-    /// empty: none. It is tried at the start; a write that fails later is said in the status and tried again
-    /// every second, at the end finish() throws if the last one failed.
+    /// empty: none. A map of an earlier process stays until there are planes to write, and is then kept under
+    /// another name (keep_earlier_map()). The folder is tried at the start: a path that cannot be one is an
+    /// error. A disk that is full is not, nor a write that fails later: it is said in the status and tried
+    /// again every second, at the end finish() throws if the last one failed.
     std::filesystem::path output;
 };
 
 /// PLANEMAP_KEYFRAME and PLANEMAP_TRAJECTORY to PLANEMAP_MAP. Throws std::runtime_error naming the file for a
-/// map to start from that cannot be read.
+/// map to start from that cannot be read, and for an output folder that cannot be one.
 class MapShell : public Shell {
   public:
     MapShell(Bus& bus, const MapShellOptions& options);
@@ -40,8 +42,11 @@ class MapShell : public Shell {
     void tell_losses();
     void publish();
     void tell();
+    void try_output();
     void try_write();
     void write();
+    bool make_way();
+    void write_failed(const std::string& why);
 
     Bus& bus_;
     std::filesystem::path output_;
@@ -55,6 +60,7 @@ class MapShell : public Shell {
     std::int64_t last_write_us_ = 0;
     std::string write_error_;  ///< of the last attempt; empty if it went well
     bool unwritten_ = false;
+    bool is_ours_ = false;  ///< the file is this process's, or what was there is kept
 };
 
 /// Flags for the options, each named --<prefix>NAME.

@@ -250,6 +250,13 @@ void count(ModuleStatus& status, const MessageError& error) {
 
 }  // namespace
 
+std::vector<const char*> FrameDecoder::refusals() {
+    std::vector<const char*> all;
+    for (const Verdict verdict : {Verdict::kLate, Verdict::kWentBack, Verdict::kJumped, Verdict::kForeign})
+        all.push_back(loss(verdict));
+    return all;
+}
+
 FrameDecoder::FrameDecoder(Bus& bus, std::optional<CameraInfo> camera)
     : bus_(bus), camera_is_given_(camera.has_value()) {
     if (camera) camera_ = std::make_shared<CameraInfo>(*camera);

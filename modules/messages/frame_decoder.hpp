@@ -83,6 +83,9 @@ class FrameDecoder {
     /// message that is no usable frame.
     std::shared_ptr<const Frame> decode(const RawMessage& message) const;
 
+    /// What ModuleStatus::lost() of a subscriber calls frames that are not taken, each way once.
+    static std::vector<const char*> refusals();
+
     const CameraInfo* camera() const { return camera_.get(); }
     /// Milliseconds that images took to decode and register, one entry a frame that was decoded.
     const Histogram& decode_ms() const { return *decode_ms_; }

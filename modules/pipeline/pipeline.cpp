@@ -87,21 +87,33 @@ Trajectory Pipeline::trajectory() const {
     return trajectory;
 }
 
-std::string Pipeline::why_lost() {
+std::optional<std::string> Pipeline::reason_lost() {
     const auto lost = std::count_if(
         estimates_.begin(), estimates_.end(),
         [](const OdometryEstimate& estimate) { return estimate.status == TrackingStatus::kLost; });
-    const auto& losses = odometry_.status().losses();
-    const auto is_most = [&](const char* reason) {
-        const auto found = losses.find(reason);
-        return found != losses.end() && 2 * found->second > lost;
+    const ModuleStatus& status = odometry_.status();
+    const auto count_of = [&](const char* reason) {
+        const auto found = status.losses().find(reason);
+        return found == status.losses().end() ? 0 : found->second;
     };
-    if (is_most(OdometryShell::kNoReadings))
+    // Frames that never reached the odometry: no estimate tells of them.
+    std::pair<std::int64_t, const char*> most{status.decode_error_count(), "frames that are corrupt"};
+    std::int64_t refused = most.first;
+    for (const char* reason : FrameDecoder::refusals()) {
+        refused += count_of(reason);
+        most = std::max(most, {count_of(reason), reason});
+    }
+    if (refused > lost) return std::to_string(most.first) + " " + most.second + " are not used";
+    if (2 * count_of(OdometryShell::kNoReadings) > lost)
         return "they have hardly a depth reading that is valid and within the camera's depth_range_m";
-    if (is_most(OdometryShell::kBesideColor))
+    if (2 * count_of(OdometryShell::kBesideColor) > lost)
         return "their depth lies beside the colour image; are camera.json's cameras and color_from_depth "
                "right?";
-    return "depth is there, but nothing to follow in it and in the colour image";
+    return std::nullopt;
+}
+
+std::string Pipeline::why_lost() {
+    return reason_lost().value_or("depth is there, but nothing to follow in it and in the colour image");
 }
 
 }  // namespace planemap

@@ -56,7 +56,9 @@ class Pipeline {
     /// a graph their poses in the odom frame, with given poses these.
     Trajectory trajectory() const;
 
-    /// Why most frames that were not tracked were not, as far as that is known: words to follow a colon.
+    /// Why most frames that were not tracked were not, where that is known: a clause.
+    std::optional<std::string> reason_lost();
+    /// The same, or what is left when no other reason is known: words to follow a colon.
     std::string why_lost();
 
     /// What went wrong on the bus, by its kind.

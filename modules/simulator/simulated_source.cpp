@@ -337,7 +337,7 @@ Trajectory SimulatedSource::ground_truth() const {
     return truth;
 }
 
-void write_planes_truth(const std::filesystem::path& file, const World& world) {
+void write_planes_truth(const std::filesystem::path& file, const World& world, const std::string& log) {
     nlohmann::json planes = nlohmann::json::array();
     for (std::size_t id = 0; id < world.surfaces.size(); ++id) {
         const Surface& surface = world.surfaces[id];
@@ -357,7 +357,9 @@ void write_planes_truth(const std::filesystem::path& file, const World& world) {
                           {"area", area},
                           {"rectangles", rectangles}});
     }
-    write_file(file, nlohmann::json{{"world", world.name}, {"planes", planes}}.dump(1) + "\n");
+    nlohmann::json truth{{"world", world.name}, {"planes", planes}};
+    if (!log.empty()) truth["log"] = log;
+    write_file(file, truth.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }
 
 }  // namespace planemap::simulator

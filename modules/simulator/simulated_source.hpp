@@ -95,7 +95,8 @@ class SimulatedSource : public FrameSource {
 /// Writes the exact planes as JSON: {"world": name, "planes": [{"id", "name", "normal": [x, y, z], "d",
 /// "area", "rectangles": [[4 corners]...]}]}; world frame (z up), metres, n.p + d = 0, normals towards the
 /// visible side, corners counter-clockwise about the normal. Pictures are left out: they cover other
-/// rectangles of their plane. Throws std::runtime_error naming the file.
-void write_planes_truth(const std::filesystem::path& file, const World& world);
+/// rectangles of their plane. `log` is the name of the log beside the file that it tells the truth of, and is
+/// added as "log"; empty: none. Throws std::runtime_error naming the file.
+void write_planes_truth(const std::filesystem::path& file, const World& world, const std::string& log = {});
 
 }  // namespace planemap::simulator

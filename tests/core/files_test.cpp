@@ -7,8 +7,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <fstream>
 #include <stdexcept>
+#include <system_error>
 
 #include "temporary_folder.hpp"
 
@@ -54,6 +56,17 @@ TEST(Files, FailureNamesTheFileAndKeepsTheOldOne) {
     EXPECT_THAT(error_of([&] { write_file(folder / "none/a", "x"); }), HasSubstr("none/a"));
     EXPECT_NE(error_of([&] { write_file(folder.path(), "x"); }), "") << "the target is a folder";
     EXPECT_TRUE(std::filesystem::is_directory(folder.path()));
+}
+
+TEST(Files, AFailureTellsItsKind) {
+    const TemporaryFolder folder;
+    write_file(folder / "file", "x");
+    try {
+        write_file(folder / "file" / "below", "x");
+        FAIL();
+    } catch (const std::system_error& error) {
+        EXPECT_EQ(error.code().value(), ENOTDIR);
+    }
 }
 
 TEST(Files, APipeIsNotWaitedFor) {

@@ -117,5 +117,10 @@ TEST(StampColumn, HoldsOneUnit) {
     EXPECT_EQ(column.read("1311868164363182000"), 1311868164363182) << "it goes on behind an error";
 }
 
+TEST(DateText, SortsByTimeWhateverTheZone) {
+    EXPECT_EQ(date_text(0), "19700101-000000");
+    EXPECT_EQ(date_text(951782400 + 3661), "20000229-010101");
+}
+
 }  // namespace
 }  // namespace planemap

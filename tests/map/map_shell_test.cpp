@@ -82,6 +82,44 @@ TEST_F(MapShellTest, StartsFromAMapAndKeepsAnEarlierOneUntilItHasOne) {
     EXPECT_EQ(shell.mapper().map().planes.size(), 2u);
 }
 
+TEST_F(MapShellTest, AnEarlierMapIsKeptAndAnEmptyOneDoesNotReplaceIt) {
+    MapShellOptions options;
+    options.output = folder_;
+    const std::filesystem::path file = folder_ / "plane_map.lcmlog";
+    std::filesystem::create_directories(folder_);
+    PlaneMap earlier = [&] {
+        Bus bus("memq://");
+        MapShell shell(bus, {});
+        bus.publish(channels::kKeyframe, to_message(test::sample_keyframe(), 0));
+        bus.publish(channels::kTrajectory, to_message(trajectory(), 0));
+        bus.drain();
+        return shell.mapper().map();
+    }();
+    earlier.utime = 42;
+    write_plane_map(file, earlier);
+    const auto kept = [&] {
+        std::vector<std::filesystem::path> found;
+        for (const auto& entry : std::filesystem::directory_iterator(folder_))
+            if (entry.path() != file) found.push_back(entry.path());
+        return found;
+    };
+    MapShell shell(bus_, options);
+    bus_.publish(channels::kTrajectory, to_message(trajectory(), 1));  // a map without planes
+    bus_.drain();
+    shell.finish();
+    EXPECT_EQ(read_plane_map(file).utime, 42);
+    EXPECT_TRUE(kept().empty());
+
+    bus_.publish(channels::kKeyframe, to_message(test::sample_keyframe(), 0));
+    bus_.publish(channels::kTrajectory, to_message(trajectory(), 2));
+    bus_.drain();
+    for (int i = 0; i < 2; ++i) shell.finish();
+    EXPECT_NE(read_plane_map(file).utime, 42);
+    ASSERT_EQ(kept().size(), 1u);
+    EXPECT_EQ(read_plane_map(kept()[0]).utime, 42);
+    EXPECT_TRUE(kept()[0].filename().string().starts_with("plane_map.earlier-"));
+}
+
 /// The limit on a file's size stands for a full disk: the write fails in the middle.
 class FullDisk {
   public:
@@ -124,6 +162,26 @@ TEST_F(MapShellTest, AFullDiskOrALostFolderEndsNothingAndTheMapIsWrittenWhenItCa
     EXPECT_EQ(shell.status().line().find("not written"), std::string::npos) << shell.status().line();
     EXPECT_NO_THROW(shell.finish());
     EXPECT_EQ(maps->size(), 1u);
+}
+
+TEST_F(MapShellTest, ADiskThatIsFullAtTheStartIsOutlived) {
+    MapShellOptions options;
+    options.output = folder_;
+    const std::filesystem::path file = folder_ / "plane_map.lcmlog";
+    std::unique_ptr<MapShell> shell;
+    {
+        const FullDisk full;
+        ASSERT_NO_THROW(shell = std::make_unique<MapShell>(bus_, options));
+        shell->status().publish_if_due(bus_, 1);
+        EXPECT_NE(shell->status().line().find("not written, trying every second: " + file.string()),
+                  std::string::npos)
+            << shell->status().line();
+        EXPECT_THROW(shell->finish(), std::runtime_error);
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(1050));
+    shell->poll();
+    EXPECT_TRUE(read_plane_map(file).planes.empty());
+    EXPECT_NO_THROW(shell->finish());
 }
 
 TEST_F(MapShellTest, TheLastMapIsRepeatedAndARepeatedTrajectoryIsNoWork) {
@@ -186,6 +244,13 @@ TEST_F(MapShellTest, AnOutputThatCannotBeWrittenIsAnErrorAtOnce) {
     options.output = folder_.string() + ".file";
     EXPECT_THROW(MapShell(bus_, options), std::exception);
     std::filesystem::remove(options.output);
+    options.output = "/proc/nowhere";
+    EXPECT_THROW(MapShell(bus_, options), std::exception);
+    options.output = "/proc";
+    EXPECT_THROW(MapShell(bus_, options), std::exception);
+    options.output = folder_;
+    std::filesystem::create_directories(folder_ / "plane_map.lcmlog");
+    EXPECT_THROW(MapShell(bus_, options), std::exception);
 }
 
 }  // namespace

@@ -6,6 +6,8 @@
 
 #include <filesystem>
 
+#include "core/files.hpp"
+#include "core/temporary_folder.hpp"
 #include "messages/channels.hpp"
 #include "messages/convert.hpp"
 #include "messages/log.hpp"
@@ -92,6 +94,16 @@ TEST_F(LogInputTest, ABadCameraDescriptionIsNamedWithItsReason) {
     EXPECT_NE(said.find("fx"), std::string::npos) << said;
     EXPECT_NE(said.find("-3"), std::string::npos) << said;
     EXPECT_NO_THROW(open_input(file_, bus_, camera_)) << "one that is given does";
+}
+
+TEST_F(LogInputTest, AFileThatIsNoLogSaysSoAndOneOfARecordingNamesItsFolder) {
+    write_file(file_, "# timestamp filename\n1.0 rgb/1.png\n");
+    EXPECT_EQ(error(), file_.string() + ": is no LCM log");
+    const test::TemporaryFolder folder;
+    write_file(folder / "rgb.txt", "1.0 rgb/1.png\n");
+    write_file(folder / "depth.txt", "1.0 depth/1.png\n");
+    file_ = folder / "rgb.txt";
+    EXPECT_EQ(error(), file_.string() + ": is no LCM log; give its folder, " + folder.path().string());
 }
 
 TEST_F(LogInputTest, ColourAloneIsNoRecording) {

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# launch_test.sh BIN: what tools/launch refuses, it refuses before it starts or touches anything.
+# launch_test.sh BIN: what tools/launch refuses, it refuses before it starts or touches anything; and a recording that
+# ends, ends nothing else.
 set -euo pipefail
 
 bin="$1"
@@ -48,4 +49,34 @@ touch "$work/used/.partial.lock"
     flock 8
     refused "another run" --output "$work/used"
 ) 8>"$work/used/.partial.lock"
-echo "launch_test: all refused, nothing touched"
+
+# Stand-ins for the programs, and an lcm-logger that ends as on a full disk: the launch must go on until the sensor ends.
+stand_ins="$work/stand-ins"
+mkdir "$stand_ins"
+for name in segmentation odometry graph map octomap; do
+    printf '#!/bin/bash\ntrap "exit 0" TERM\nfor ((i = 0; i < 300; ++i)); do sleep 0.1; done\n' >"$stand_ins/planemap-$name"
+done
+printf '#!/bin/bash\n[[ "$1" == --check ]] || { $AT_START; sleep 2; echo sensor done >&2; }\n' >"$stand_ins/planemap-sensor"
+printf '#!/bin/bash\nsleep "$LOGGER_LIVES"\necho "No space left on device" >&2\nexit 1\n' >"$stand_ins/lcm-logger"
+chmod +x "$stand_ins"/*
+for lives in 0 3; do # it ends before the sensor starts, and while it plays
+    code=0
+    AT_START=true LOGGER_LIVES="$lives" PATH="$stand_ins:$PATH" "$launch" --bin "$stand_ins" --lcm-url tcpq://127.0.0.1:1 \
+        --log "$work/full-$lives.lcmlog" --output "$work/recorded" 2>"$said" || code=$?
+    if [[ "$code" -ne 1 || "$(grep -c "lcm-logger ended" "$said")" -ne 2 ]] || ! grep -q "sensor done" "$said" ||
+        ! tail -n 1 "$said" | grep -q "tools/launch: lcm-logger ended.*full-$lives.lcmlog" ||
+        grep -q "stopping the others" "$said"; then
+        echo "launch_test: the recording ended, code $code:" >&2
+        cat "$said" >&2
+        exit 1
+    fi
+done
+[[ ! -e "$work/recorded/.partial.lock" ]] || { echo "launch_test: the lock was left behind" >&2 && exit 1; }
+
+# The folder is another run's now: its lock stays.
+lock="$work/recorded/.partial.lock"
+printf '#!/bin/bash\nrm -f "%s"\ntouch "%s"\n' "$lock" "$lock" >"$stand_ins/take"
+chmod +x "$stand_ins/take"
+AT_START="$stand_ins/take" "$launch" --bin "$stand_ins" --lcm-url tcpq://127.0.0.1:1 --output "$work/recorded" 2>"$said"
+[[ -e "$lock" ]] || { echo "launch_test: another run's lock was removed" >&2 && exit 1; }
+echo "launch_test: all refused, nothing touched; a recording that ends, ends nothing else"

@@ -40,9 +40,9 @@ expect_the_same() {
         fail "$2: the live map is not planemap-run's"
 }
 
-"$bin/planemap-simulate" 'sim:office?frames=90' --output "$work/walk.lcmlog" >/dev/null
-"$bin/planemap-simulate" 'sim:office?frames=20&speed=0.01&turn=1' --output "$work/still.lcmlog" >/dev/null
-expect_the_same "$work/still.lcmlog" still
-expect_the_same "$work/walk.lcmlog" walk
+"$bin/planemap-simulate" 'sim:office?frames=90' --output "$work/walk/walk.lcmlog" >/dev/null
+"$bin/planemap-simulate" 'sim:office?frames=20&speed=0.01&turn=1' --output "$work/still/still.lcmlog" >/dev/null
+expect_the_same "$work/still/still.lcmlog" still
+expect_the_same "$work/walk/walk.lcmlog" walk
 if [[ $# -gt 2 ]]; then expect_the_same "$3" given; fi
 echo "live_map_test: the same maps live as offline"

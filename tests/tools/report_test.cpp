@@ -1,13 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "run/report.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <nlohmann/json.hpp>
+
+#include "core/files.hpp"
+#include "core/temporary_folder.hpp"
 
 namespace planemap {
 namespace {
 
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
 using Json = nlohmann::ordered_json;
 
 Json sample() {
@@ -129,9 +137,44 @@ TEST(Report, WhatWasNotUsedIsSaidOnceAReason) {
     EXPECT_NE(text.find("- 2 messages that were corrupt (odometry)\n"), std::string::npos) << text;
 }
 
-TEST(Report, SomethingElseIsAnError) {
-    EXPECT_THROW(report_markdown(Json::parse("{}")), std::runtime_error);
-    EXPECT_THROW(report_markdown(Json::parse("[1]")), std::runtime_error);
+std::string error_of(const std::function<void()>& body) {
+    try {
+        body();
+    } catch (const std::exception& error) {
+        return error.what();
+    }
+    return {};
+}
+
+TEST(Report, SomethingElseIsAnErrorThatNamesTheField) {
+    const auto error = [](const Json& report) { return error_of([&] { report_markdown(report); }); };
+    EXPECT_EQ(error(Json::object()), "is no report of planemap-run: input is missing");
+    EXPECT_EQ(error(Json::parse("[1]")), "is no report of planemap-run: is array, not object");
+    Json report = sample();
+    report["sizes_bytes"]["plane_map_message"] = "large";
+    EXPECT_EQ(error(report),
+              "is no report of planemap-run: sizes_bytes/plane_map_message is string, not number");
+    report = sample();
+    report["stages_ms"]["decode"].erase("count");
+    EXPECT_NE(error(report).find("is no report of planemap-run: "), std::string::npos);
+    EXPECT_NE(error(report).find("count"), std::string::npos);
+}
+
+TEST(Report, AFolderWithoutOneSaysWhyAndABrokenOneWhere) {
+    const test::TemporaryFolder folder;
+    const auto error = [&] { return error_of([&] { read_report(folder.path()); }); };
+    EXPECT_THAT(error(), AllOf(HasSubstr("report.json: "), HasSubstr("no output folder of a planemap-run")));
+    std::filesystem::create_directories(folder / ".partial");
+    EXPECT_THAT(error(), AllOf(HasSubstr("goes on or did not end"), HasSubstr((folder / ".partial").string()),
+                               HasSubstr("the next planemap-run into this folder keeps")));
+    std::filesystem::create_directories(folder / ".partial-whole");
+    EXPECT_THAT(error(), AllOf(HasSubstr("they are whole"), HasSubstr((folder / ".partial-whole").string())));
+    write_file(folder / "report.json", "{\n\"input\": }");
+    EXPECT_THAT(error(),
+                AllOf(HasSubstr("report.json: line 2, column 10: "), Not(HasSubstr("json.exception"))));
+    write_file(folder / "report.json", sample().dump());
+    EXPECT_EQ(read_report(folder.path()).begin().key(), "input") << "in its own order";
+    EXPECT_THAT(error_of([&] { read_report(folder / "none"); }), HasSubstr("no such folder"));
 }
 
 }  // namespace

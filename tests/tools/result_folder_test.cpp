@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "results/result_folder.hpp"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -221,19 +223,64 @@ TEST(ResultFolder, AFolderThatWentAwayIsMadeAgain) {
     EXPECT_THAT(results.take_notes(), ElementsAre(HasSubstr("removed meanwhile")));
 }
 
+TEST(ResultFolder, WhateverIsRemovedASecondRunIsRefused) {
+    const TemporaryFolder parent;
+    const std::filesystem::path folder = parent / "out";
+    ResultFolder first(folder, kNames);
+    const auto second = [&] { return error_of([&] { ResultFolder(folder, kNames); }); };
+    std::filesystem::remove(folder / ".partial.lock");
+    EXPECT_THAT(second(), HasSubstr("another run"));
+    first.make(text("a", "first"));
+    EXPECT_THAT(first.take_notes(), ElementsAre(HasSubstr(".partial.lock: was removed meanwhile")))
+        << "and not the folder";
+    std::filesystem::remove_all(folder);
+    EXPECT_THAT(second(), HasSubstr("another run"));
+    std::filesystem::create_directory_symlink(parent.path(), parent / "link");
+    EXPECT_THAT(error_of([&] { ResultFolder(parent / "link" / "out", kNames); }), HasSubstr("another run"))
+        << "by another path";
+    std::filesystem::create_directories(folder);
+    first.make(text("a", "first"));
+    EXPECT_THAT(first.take_notes(), ElementsAre(HasSubstr("out: was removed meanwhile; made again")));
+    first.replace();
+    EXPECT_EQ(read_file(folder / "a"), "first");
+}
+
+TEST(ResultFolder, WhatTookTheFoldersPlaceIsLeftThere) {
+    const TemporaryFolder parent;
+    const std::filesystem::path folder = parent / "out";
+    write_file(parent / "out-2", "no folder");
+    std::filesystem::create_directories(parent / "out-3");
+    write_file(parent / "out-3/a", "of an earlier run");
+    ResultFolder results(folder, kNames);
+    results.make(text("a", "interim"));
+    std::filesystem::remove_all(folder);
+    write_file(folder, "a file now");
+    results.make(text("a", "final"));
+    results.replace();
+    EXPECT_EQ(read_file(folder), "a file now");
+    EXPECT_EQ(results.path(), parent / "out-4");
+    EXPECT_EQ(read_file(parent / "out-4" / "a"), "final");
+    EXPECT_EQ(read_file(parent / "out-3" / "a"), "of an earlier run");
+    EXPECT_THAT(results.take_notes(),
+                ElementsAre(AllOf(HasSubstr("out: is no folder any more"), HasSubstr("out-4"))));
+}
+
+/// By a process that does not know the lock's name, as tools/launch.
 TEST(ResultFolder, AFolderThatAnotherRunTookIsLeftToIt) {
     const test::TemporaryFolder parent;
     const std::filesystem::path folder = parent / "out";
     ResultFolder first(folder, kNames);
     std::filesystem::remove_all(folder);
-    ResultFolder second(folder, kNames);
+    std::filesystem::create_directories(folder);
+    const int lock = ::open((folder / ".partial.lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    ASSERT_EQ(::flock(lock, LOCK_EX), 0);
     first.make(text("a", "first"));
-    second.make(text("a", "second"));
     first.replace();
-    second.replace();
-    EXPECT_EQ(read_file(folder / "a"), "second");
+    ::close(lock);
+    EXPECT_THAT(names_in(folder), ElementsAre(".partial.lock"));
     EXPECT_EQ(first.path(), parent / "out-2");
     EXPECT_EQ(read_file(parent / "out-2" / "a"), "first");
+    EXPECT_THAT(first.take_notes(), ElementsAre(HasSubstr("another run has taken it")));
 }
 
 TEST(ResultFolder, WhatCanBeSeenAtTheStartIsSeenThen) {

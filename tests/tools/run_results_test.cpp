@@ -9,6 +9,7 @@
 #include "map/map_file.hpp"
 #include "messages/channels.hpp"
 #include "messages/convert.hpp"
+#include "messages/decode.hpp"
 #include "messages/image_codec.hpp"
 #include "messages/log.hpp"
 #include "tools/programs.hpp"
@@ -45,8 +46,8 @@ class RunResults : public test::Programs {
         EXPECT_GT(read_trajectory(folder / "trajectory.txt").size(), 0u);
         EXPECT_GT(nlohmann::json::parse(read_file(folder / "planes.json")).at("planes").size(), 0u);
     }
-    /// A log of frames without a reading.
-    std::string dark_log() {
+    /// A log of frames without a reading, so far apart.
+    std::string dark_log(std::int64_t step_us = 33333) {
         CameraInfo camera;
         camera.depth = camera.color = {64, 48, 50, 50, 31.5, 23.5};
         LogWriter log(folder_ / "dark.lcmlog");
@@ -59,7 +60,7 @@ class RunResults : public test::Programs {
         write(channels::kCameraInfo, to_message(camera, 0, 0));
         for (int i = 0; i < 5; ++i) {
             bot_core::images_t images;
-            images.utime = 33333 * i;
+            images.utime = 1000000 + step_us * i;
             images.n_images = 1;
             images.image_types = {bot_core::images_t::DEPTH_MM_ZIPPED};
             images.images = {depth_image_message(DepthImage(64, 48), images.utime, DepthEncoding::kZipped)};
@@ -104,6 +105,10 @@ TEST_F(RunResults, AGoodMapIsNotReplacedByAnEmptyOne) {
     EXPECT_TRUE(bytes_of("out") == good);
     EXPECT_EQ(aside("out"), "") << "there is nothing to keep";
 
+    // What is said is why: the depth of frames that are refused was not looked at.
+    const Outcome refused = run("planemap-run", dark_log(-33333) + " -o " + path("other"));
+    EXPECT_THAT(refused.err, HasSubstr("could be tracked: 4 frames whose stamp went back are not used"));
+
     // Tracked, but no planes: its trajectory is worth something.
     const Outcome bare = run("planemap-run",
                              "'sim:office?frames=20' -q --no-octomap --map-min-area-m2 1e6 "
@@ -113,6 +118,118 @@ TEST_F(RunResults, AGoodMapIsNotReplacedByAnEmptyOne) {
     EXPECT_THAT(bare.err, HasSubstr("no planes"));
     EXPECT_TRUE(bytes_of("out") == good);
     EXPECT_EQ(read_trajectory(aside("out") / "trajectory.txt").size(), 20u);
+}
+
+/// The walk of a log with its stamps falling: all frames but the first are refused.
+void let_stamps_fall(const std::filesystem::path& from, const std::filesystem::path& to) {
+    LogReader walk(from);
+    LogWriter log(to);
+    for (LogEvent event; walk.next(event);) {
+        if (event.channel == channels::kFrame) {
+            auto images = decode<bot_core::images_t>(event.bytes);
+            images.utime = 100000000 - images.utime;
+            event.bytes.resize(static_cast<std::size_t>(images.getEncodedSize()));
+            images.encode(event.bytes.data(), 0, images.getEncodedSize());
+        }
+        log.write(event);
+    }
+    log.close();
+}
+
+TEST_F(RunResults, ARunThatTrackedFewFramesDoesNotReplaceABetterOne) {
+    ASSERT_EQ(run("planemap-simulate", "'sim:office?frames=20' -o " + path("log/walk.lcmlog")).exit_code, 0);
+    let_stamps_fall(folder_ / "log/walk.lcmlog", folder_ / "log/falling.lcmlog");
+    const std::string common = " -q --no-octomap -o " + path("out");
+    ASSERT_EQ(run("planemap-run", path("log/walk.lcmlog") + common).exit_code, 0);
+    const auto good = bytes_of("out");
+    const Outcome falling = run("planemap-run", path("log/falling.lcmlog") + common);
+    EXPECT_EQ(falling.exit_code, 1);
+    EXPECT_TRUE(bytes_of("out") == good);
+    ASSERT_NE(aside("out"), "");
+    EXPECT_THAT(
+        falling.err,
+        AllOf(HasSubstr("falling.lcmlog: only 1 of its 20 frames tracked; " + path("out") +
+                        " keeps the results of an earlier run, the new ones are in " + aside("out").string()),
+              HasSubstr("why not the others: 19 frames whose stamp went back are not used")));
+    EXPECT_EQ(report(aside("out").string()).at("tracked"), 1);
+
+    // Into a folder of its own it is written, and a better run replaces it.
+    const std::string fresh = " -q --no-octomap -o " + path("fresh");
+    EXPECT_EQ(run("planemap-run", path("log/falling.lcmlog") + fresh).exit_code, 0);
+    EXPECT_EQ(run("planemap-run", path("log/falling.lcmlog") + fresh).exit_code, 0) << "no worse than before";
+    EXPECT_EQ(report("fresh").at("tracked"), 1);
+    EXPECT_EQ(run("planemap-run", path("log/walk.lcmlog") + fresh).exit_code, 0);
+    EXPECT_EQ(report("fresh").at("tracked"), 20);
+    EXPECT_EQ(aside("fresh"), "");
+}
+
+TEST_F(RunResults, AnInterruptedRunDoesNotReplaceAWholeOne) {
+    ASSERT_EQ(run("planemap-run", "'sim:office?frames=20' -q --no-octomap -o " + path("out")).exit_code, 0);
+    EXPECT_FALSE(report("out").at("interrupted").get<bool>());
+    const auto good = bytes_of("out");
+    const std::string interrupt =
+        "$bin/planemap-run 'sim:office?frames=4000' --no-octomap -o $dir/OUT >/dev/null 2>$dir/said & "
+        "run=$!\n"
+        "for ((i = 0; i < 600; ++i)); do [[ -e $dir/OUT/.partial/planes.json ]] && break; sleep 0.1; done\n"
+        "kill -INT $run; wait $run; code=$?; cat $dir/said >&2; exit $code";
+    const auto into = [&](std::string name) {
+        std::string line = interrupt;
+        for (auto at = line.find("OUT"); at != std::string::npos; at = line.find("OUT"))
+            line.replace(at, 3, name);
+        return run_shell(line);
+    };
+    const Outcome stopped = into("out");
+    EXPECT_EQ(stopped.exit_code, 1);
+    EXPECT_TRUE(bytes_of("out") == good);
+    ASSERT_NE(aside("out"), "");
+    EXPECT_THAT(stopped.err, AllOf(HasSubstr("ended before the end of its input"),
+                                   HasSubstr("keeps the results of an earlier run, the new ones are in " +
+                                             aside("out").string())));
+    EXPECT_TRUE(report(aside("out").string()).at("interrupted").get<bool>());
+
+    EXPECT_EQ(into("fresh").exit_code, 0);
+    EXPECT_TRUE(report("fresh").at("interrupted").get<bool>());
+    expect_essentials(folder_ / "fresh");
+}
+
+TEST_F(RunResults, AStopBeforeTheFirstFrameDoesNotBlameTheInput) {
+    const Outcome stopped = run_shell(
+        "for ((i = 0; i < 40; ++i)); do\n"
+        "  $bin/planemap-run 'sim:office?frames=50' -q --no-octomap -o $dir/out >/dev/null 2>$dir/said & "
+        "run=$!\n"
+        "  until [[ -e $dir/out/.partial.lock ]]; do :; done; kill -INT $run; wait $run; code=$?\n"
+        "  grep -q 'stopped after 0 frames' $dir/said && break; rm -rf $dir/out; code=77\n"
+        "done; cat $dir/said >&2; exit $code");
+    if (stopped.exit_code == 77) GTEST_SKIP() << "no stop came before the first frame";
+    EXPECT_EQ(stopped.exit_code, 1);
+    EXPECT_THAT(stopped.err, AllOf(HasSubstr("stopped before the first frame of sim:office"),
+                                   Not(HasSubstr("could be used"))));
+}
+
+TEST_F(RunResults, TwoLogsInOneFolderDoNotShareATruth) {
+    const std::string a = "-o " + path("sim/a.lcmlog"), b = "-o " + path("sim/b.lcmlog");
+    ASSERT_EQ(run("planemap-simulate", "'sim:office?frames=3' " + a).exit_code, 0);
+    const auto first = bytes_of("sim");
+    expect_error("planemap-simulate", "'sim:office?frames=5' " + b,
+                 "groundtruth.txt: is the truth of a.lcmlog");
+    write_file(folder_ / "sim/b.lcmlog", "a recording of another kind");
+    expect_error("planemap-simulate", "'sim:office?frames=5' " + b,
+                 "groundtruth.txt: is the truth of a.lcmlog");
+    std::filesystem::remove(folder_ / "sim/b.lcmlog");
+    EXPECT_TRUE(bytes_of("sim") == first);
+    EXPECT_EQ(run("planemap-simulate", "'sim:office?frames=5' " + a).exit_code, 0) << "its own it replaces";
+    EXPECT_EQ(read_trajectory(folder_ / "sim/groundtruth.txt").size(), 5u);
+}
+
+TEST_F(RunResults, WhatTakesTheFoldersPlaceIsSaidAsItIs) {
+    const Outcome result = run_shell(
+        "$bin/planemap-run 'sim:office?frames=4000' -q --no-octomap -o $dir/out >/dev/null & run=$!\n"
+        "for ((i = 0; i < 600; ++i)); do [[ -e $dir/out/.partial/planes.json ]] && break; sleep 0.1; done\n"
+        "rm -r $dir/out; echo mine >$dir/out; sleep 0.5; kill -INT $run; wait $run");
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_THAT(result.err, HasSubstr("out: is no folder any more; the results go to " + path("out-2")));
+    EXPECT_EQ(read_file(folder_ / "out"), "mine\n");
+    expect_essentials(folder_ / "out-2");
 }
 
 TEST_F(RunResults, OfTwoRunsIntoOneFolderTheSecondIsRefused) {

@@ -358,6 +358,12 @@ TEST_F(RunTest, AnOddFolderIsMappedAndWhatIsWrongInItIsSaid) {
         EXPECT_NE(result.err.find(said), std::string::npos) << said << "\n" << result.err;
     }
     EXPECT_LT(std::count(result.err.begin(), result.err.end(), '\n'), 10) << result.err;
+
+    std::filesystem::remove(folder_ / "odd/groundtruth.txt");
+    std::filesystem::create_directory(folder_ / "odd/groundtruth.txt");
+    const Result again = run("planemap-run", path("odd") + " --no-octomap --quiet --output " + path("out"));
+    EXPECT_EQ(again.exit_code, 0);
+    EXPECT_NE(again.err.find("groundtruth.txt: cannot read: Is a directory"), std::string::npos) << again.err;
 }
 
 TEST_F(RunTest, TheSensorSaysWhatItCannotRead) {

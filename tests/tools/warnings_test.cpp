@@ -23,29 +23,32 @@ std::vector<OdometryEstimate> estimates_at(double step_s) {
 }
 
 TEST(Warnings, FramesFarApart) {
-    EXPECT_THAT(warnings_of(estimates_at(0.67), false, Json::object()),
+    EXPECT_THAT(warnings_of(estimates_at(0.67), false, {}, Json::object()),
                 ElementsAre(HasSubstr("frames are 0.67 s apart (median)")));
-    EXPECT_THAT(warnings_of(estimates_at(0.67), true, Json::object()), IsEmpty())
+    EXPECT_THAT(warnings_of(estimates_at(0.67), true, {}, Json::object()), IsEmpty())
         << "nothing rests on tracking";
     for (const double step_s : {0.033, 0.1, 0.2})
-        EXPECT_THAT(warnings_of(estimates_at(step_s), false, Json::object()), IsEmpty()) << step_s;
-    EXPECT_THAT(warnings_of({}, false, Json::object()), IsEmpty());
+        EXPECT_THAT(warnings_of(estimates_at(step_s), false, {}, Json::object()), IsEmpty()) << step_s;
+    EXPECT_THAT(warnings_of({}, false, {}, Json::object()), IsEmpty());
 }
 
 TEST(Warnings, MostFramesLost) {
     const auto with = [](int tracked) {
-        return warnings_of(estimates_at(0.033), false, {{"frames", 60}, {"tracked", tracked}});
+        return warnings_of(estimates_at(0.033), false, {}, {{"frames", 60}, {"tracked", tracked}});
     };
     EXPECT_THAT(with(1), ElementsAre(HasSubstr("only 1 of 60 frames are tracked")));
     EXPECT_THAT(with(29), ElementsAre(HasSubstr("only 29 of 60")));
     EXPECT_THAT(with(0), IsEmpty()) << "is an error already";
     EXPECT_THAT(with(30), IsEmpty());
     EXPECT_THAT(with(60), IsEmpty());
+    EXPECT_THAT(
+        warnings_of(estimates_at(0.033), false, "59 frames are late", {{"frames", 60}, {"tracked", 1}}),
+        ElementsAre(HasSubstr("why not the others: 59 frames are late")));
 }
 
 TEST(Warnings, ScaleOffTheTruth) {
     const auto with = [](Json scale, double extent_m) {
-        return warnings_of(estimates_at(0.033), false,
+        return warnings_of(estimates_at(0.033), false, {},
                            {{"accuracy", {{"scale", scale}, {"extent_m", extent_m}, {"ate_rmse_m", 0.1}}}});
     };
     EXPECT_THAT(with(0.958, 5), ElementsAre(HasSubstr("4.4 % too long")));

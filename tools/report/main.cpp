@@ -20,14 +20,13 @@ int main(int argc, char** argv) {
     if (parsed >= 0) return parsed;
     const std::filesystem::path folder = folder_name;
     return planemap::run_main("planemap-report", [&] {
-        const std::filesystem::path file = folder / "report.json";
-        nlohmann::ordered_json report;
+        const nlohmann::ordered_json report = planemap::read_report(folder);
+        std::string markdown;
         try {
-            report = nlohmann::ordered_json::parse(planemap::read_file(file));
-        } catch (const nlohmann::json::exception& error) {
-            throw std::runtime_error(file.string() + ": " + error.what());
+            markdown = planemap::report_markdown(report);
+        } catch (const std::runtime_error& error) {
+            throw std::runtime_error((folder / "report.json").string() + ": " + error.what());
         }
-        const std::string markdown = planemap::report_markdown(report);
         planemap::print(markdown);
         planemap::write_file(folder / "report.md", markdown);
         return 0;

@@ -2,12 +2,10 @@
 #include "results/result_folder.hpp"
 
 #include <fcntl.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <csignal>
 #include <cstring>
 #include <ctime>
@@ -18,6 +16,7 @@
 #include <utility>
 
 #include "core/files.hpp"
+#include "core/stamp.hpp"
 
 namespace planemap {
 
@@ -31,10 +30,6 @@ constexpr const char* kStale = ".stale-";  ///< marks a name whose earlier resul
 
 [[noreturn]] void fail(const fs::path& path, const std::string& what, const std::string& reason) {
     throw std::runtime_error(path.string() + ": " + what + ": " + reason);
-}
-
-[[noreturn]] void fail(const fs::path& path, const std::string& what, int error) {
-    fail(path, what, std::strerror(error));
 }
 
 bool is_there(const fs::path& path) {
@@ -90,18 +85,17 @@ std::string date_of(const fs::path& folder) {
     if (::stat(folder.c_str(), &status) == 0) newest = status.st_mtime;
     for (const fs::path& entry : entries_of(folder))
         if (::stat(entry.c_str(), &status) == 0) newest = std::max(newest, status.st_mtime);
-    std::tm utc = {};
-    ::gmtime_r(&newest, &utc);
-    char text[32];
-    std::strftime(text, sizeof(text), "%Y%m%d-%H%M%S", &utc);
-    return text;
+    return date_text(newest);
 }
 
 }  // namespace
 
 ResultFolder::ResultFolder(fs::path folder, std::vector<std::string> names, std::string workspace_name,
                            Leftovers leftovers)
-    : folder_(std::move(folder)), names_(std::move(names)), workspace_(std::move(workspace_name)) {
+    : folder_(std::move(folder)),
+      names_(std::move(names)),
+      workspace_(std::move(workspace_name)),
+      lock_(workspace_ + ".lock") {
     // A limit on the size of files (ulimit -f) is then an error of the write, not the end of the process.
     std::signal(SIGXFSZ, SIG_IGN);
     for (const std::string& name : names_) {
@@ -113,7 +107,7 @@ ResultFolder::ResultFolder(fs::path folder, std::vector<std::string> names, std:
                                      ", where a result is to go");
         }
     }
-    if (!lock()) {
+    if (!lock_.take(folder_)) {
         throw std::runtime_error(folder_.string() +
                                  ": another run is writing its results there (its lock is " +
                                  lock_file().filename().string() + "): wait for it, or give another folder");
@@ -131,72 +125,43 @@ ResultFolder::ResultFolder(fs::path folder, std::vector<std::string> names, std:
         }
         try_room();
     } catch (...) {
-        unlock();
+        lock_.release();
         throw;
     }
 }
 
 ResultFolder::~ResultFolder() {
     std::error_code ignored;
-    if (is_locked()) fs::remove(workspace(), ignored);  // succeeds only if it is empty
-    unlock();
+    if (lock_.state() == FolderLock::State::kHeld)
+        fs::remove(workspace(), ignored);  // succeeds only if it is empty
 }
 
 std::vector<std::string> ResultFolder::take_notes() {
     return std::exchange(notes_, {});
 }
 
-/// True when the lock is ours and lies in the folder that bears the name now.
-bool ResultFolder::is_locked() const {
-    struct stat ours = {}, there = {};
-    return lock_ >= 0 && ::fstat(lock_, &ours) == 0 && ::stat(lock_file().c_str(), &there) == 0 &&
-           ours.st_ino == there.st_ino && ours.st_dev == there.st_dev;
-}
-
-/// Makes the folder and takes its lock; false if another process holds it.
-bool ResultFolder::lock() {
-    while (true) {
-        std::error_code error;
-        fs::create_directories(folder_, error);
-        if (error) fail(folder_, "cannot be made", error.message());
-        if (!fs::is_directory(folder_, error))
-            throw std::runtime_error(folder_.string() + ": is no folder that can be written to");
-        lock_ = ::open(lock_file().c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-        if (lock_ < 0) fail(folder_, "is no folder that can be written to", errno);
-        if (::flock(lock_, LOCK_EX | LOCK_NB) != 0) {
-            const int reason = errno;
-            if (reason == EINTR) {
-                ::close(std::exchange(lock_, -1));
-                continue;
-            }
-            if (reason == EWOULDBLOCK) {
-                ::close(std::exchange(lock_, -1));
-                return false;
-            }
-            notes_.push_back(folder_.string() + ": cannot be locked (" + std::strerror(reason) +
-                             "): see to it that no other run writes there meanwhile");
-            return true;
-        }
-        if (is_locked()) return true;
-        ::close(std::exchange(lock_, -1));  // its last holder has just removed it
-    }
-}
-
-void ResultFolder::unlock() {
-    if (is_locked()) ::unlink(lock_file().c_str());
-    if (lock_ >= 0) ::close(std::exchange(lock_, -1));
-}
-
-/// Sees to it that the folder is there and ours. One that was removed meanwhile is made again; if another run
-/// has taken its place, the results go into a folder beside it.
+/// Sees to it that the folder is there and ours. One that was removed meanwhile is made again; if something
+/// else has taken its place, the results go into a folder beside it.
 void ResultFolder::enter() {
-    if (is_locked()) return;
-    ::close(std::exchange(lock_, -1));
+    using State = FolderLock::State;
+    const State state = lock_.state();
+    if (state == State::kHeld) return;
+    if (state == State::kNoFolder) return go_beside("is no folder any more");
+    if (state == State::kTaken || !lock_.retake()) return go_beside("another run has taken it");
+    const bool only_file = state == State::kFileRemoved;
+    notes_.push_back((only_file ? lock_file() : folder_).string() + ": was removed meanwhile; made again");
+    if (!only_file) made_.clear();
+}
+
+void ResultFolder::go_beside(const std::string& why) {
     const fs::path wanted = folder_;
-    for (int i = 2; !lock(); ++i) folder_ = wanted.string() + "-" + std::to_string(i);
+    for (int i = 2;; ++i) {
+        folder_ = wanted.string() + "-" + std::to_string(i);
+        if (is_there(folder_) && (!fs::is_directory(folder_) || !entries_of(folder_).empty())) continue;
+        if (lock_.take(folder_)) break;
+    }
     made_.clear();
-    notes_.push_back(wanted.string() + ": was removed meanwhile; " +
-                     (folder_ == wanted ? "made again" : "the results go to " + folder_.string()));
+    notes_.push_back(wanted.string() + ": " + why + "; the results go to " + folder_.string());
 }
 
 /// Ends what an earlier run began: its results were whole, but not all in place.

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "results/folder_lock.hpp"
+
 namespace planemap {
 
 /// One file of results: its name in the folder, and what writes it to the path it is given.
@@ -20,8 +22,8 @@ struct Result {
 /// they are all there; until then the earlier ones are untouched. A kill while they are moved is made good by
 /// the next ResultFolder there. What a run that did not end left in its workspace is set aside as
 /// FOLDER/partial-DATE-N (UTC, when it was last written), so that nothing is lost; of these the newest five
-/// are kept, so that they do not pile up. One process at a time works with a workspace: the lock goes with
-/// the process, however that ends. Files under other names are never touched.
+/// are kept, so that they do not pile up. One process at a time works with a workspace (FolderLock). Files
+/// under other names are never touched.
 class ResultFolder {
   public:
     enum class Leftovers { kSetAside, kRemove };
@@ -70,9 +72,7 @@ class ResultFolder {
     std::filesystem::path moving() const { return folder_ / (workspace_ + "-whole"); }
     std::filesystem::path lock_file() const { return folder_ / (workspace_ + ".lock"); }
     void enter();
-    bool lock();
-    void unlock();
-    bool is_locked() const;
+    void go_beside(const std::string& why);
     void restore();
     void try_room() const;
     void remove_scraps() const;
@@ -84,7 +84,7 @@ class ResultFolder {
     std::vector<std::string> names_;
     std::string workspace_;
     std::vector<std::string> made_, notes_;
-    int lock_ = -1;
+    FolderLock lock_;
 };
 
 }  // namespace planemap

@@ -75,7 +75,7 @@ class SensorInput : public Input {
     void read_truth() {
         const std::filesystem::path file = folder_ / "groundtruth.txt";
         std::error_code ignored;
-        if (!std::filesystem::is_regular_file(file, ignored)) return;
+        if (!std::filesystem::exists(file, ignored)) return;
         try {
             truth_ = read_trajectory(file);
         } catch (const std::runtime_error& error) {
@@ -139,6 +139,7 @@ class LogInput : public Input {
                 reason = why;
             }
         }
+        if (contents.count() == 0) throw std::runtime_error(name + ": is no LCM log" + hint(name));
         if (channel_.empty()) {
             throw std::runtime_error(name +
                                      ": no camera frames with depth (bot_core.images_t with DEPTH_MM or "
@@ -191,6 +192,15 @@ class LogInput : public Input {
         return false;
     }
 
+    /// A file of a recording in a folder is not the recording.
+    static std::string hint(const std::filesystem::path& file) {
+        const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
+        std::error_code ignored;
+        return std::filesystem::exists(folder / "depth.txt", ignored)
+                   ? "; give its folder, " + folder.string()
+                   : "";
+    }
+
     /// An error now rather than at the end of the log.
     void check_range() const {
         LogReader ahead(name_);
@@ -215,6 +225,7 @@ class LogInput : public Input {
 bool Input::feed() {
     const auto start = std::chrono::steady_clock::now();
     const bool more = publish_next();
+    is_at_end_ = !more;
     if (more) {
         read_ms_.add(
             std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());

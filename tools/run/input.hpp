@@ -23,6 +23,8 @@ class Input {
     virtual ~Input() = default;
     /// Publishes up to and including the next frame; false when there is none.
     bool feed();
+    /// True when feed() found the end of the input, not before it and not because of a failure().
+    bool is_at_end() const { return is_at_end_ && failure().empty(); }
     /// Frames that were read, the broken ones included.
     virtual std::int64_t frames() const = 0;
     /// How far the input is read, 0 to 1; nothing if that is not known.
@@ -44,6 +46,7 @@ class Input {
     virtual bool publish_next() = 0;
 
     Histogram read_ms_;
+    bool is_at_end_ = false;
 };
 
 /// Opens a TUM-layout folder, an LCM log or a simulator name (sim:...). `camera` is for logs that do not

@@ -88,16 +88,22 @@ std::vector<std::string> problems_of(const std::string& input_name, const Input&
     const std::string aside = outputs.folder.empty() || outputs.folder == folder.path()
                                   ? ""
                                   : earlier + ", the new ones are in " + outputs.folder.string();
-    if (pipeline.estimates().empty()) {
+    if (pipeline.estimates().empty() && stop_requested()) {
+        lines.push_back("stopped before the first frame of " + input_name + " was mapped" + earlier);
+    } else if (pipeline.estimates().empty()) {
         lines.push_back(input_name + ": no frame of it could be used" + earlier);
     } else if (tracked_frames(pipeline) == 0) {
         lines.push_back(input_name + ": none of its " + std::to_string(input.frames()) +
                         " frames could be tracked: " + pipeline.why_lost() + earlier);
     } else if (!outputs.failures.empty()) {
-        lines.push_back(std::to_string(outputs.failures.size()) + " of the results could not be written" +
-                        (aside.empty() ? "; the others are in " + outputs.folder.string() : aside));
+        const std::string others =
+            outputs.folder.empty() ? earlier : "; the others are in " + outputs.folder.string();
+        const std::string failed = outputs.folder.empty() ? "none of the results could be put in place"
+                                                          : std::to_string(outputs.failures.size()) +
+                                                                " of the results could not be written";
+        lines.push_back(failed + (aside.empty() ? others : aside));
     } else if (!aside.empty()) {
-        lines.push_back(input_name + ": no planes in its map" + aside);
+        lines.push_back(input_name + ": " + outputs.why_aside + aside);
     }
     return lines;
 }

@@ -16,6 +16,7 @@
 #include "run/report.hpp"
 #include "run/size_report.hpp"
 #include "run/warnings.hpp"
+#include "run/worth.hpp"
 
 namespace planemap {
 
@@ -92,6 +93,7 @@ Json report_of(const std::string& input_name, const Input& input, Pipeline& pipe
     report["tracked"] = tracked;
     report["lost"] = static_cast<std::int64_t>(estimates.size()) - tracked;
     report["broken"] = input.frames() - static_cast<std::int64_t>(estimates.size());
+    report["interrupted"] = !input.is_at_end();
     report["keyframes"] = keyframes.keyframes.size();
     report["loop_closures"] = keyframes.loop_closures;
     report["planes"] = map.planes.size();
@@ -109,7 +111,8 @@ Json report_of(const std::string& input_name, const Input& input, Pipeline& pipe
     report["complaints"] = complaints;
     add_sizes(pipeline, input.frames(), report);
     add_accuracy(input, pipeline, report);
-    report["warnings"] = warnings_of(estimates, pipeline.given_poses() != nullptr, report);
+    report["warnings"] =
+        warnings_of(estimates, pipeline.given_poses() != nullptr, pipeline.reason_lost(), report);
     report.update(about);
     return report;
 }
@@ -139,17 +142,12 @@ std::vector<Result> further_results(const Input& input, Pipeline& pipeline, cons
     return results;
 }
 
-/// True if an earlier run left a map that is worth more than one without planes. A file that cannot be read
-/// as a map is kept, too: what it holds is not known.
-bool holds_planes(const std::filesystem::path& folder) {
-    const std::filesystem::path file = folder / "plane_map.lcmlog";
-    std::error_code ignored;
-    if (!std::filesystem::exists(file, ignored)) return false;
-    try {
-        return !read_plane_map(file).planes.empty();
-    } catch (const std::exception&) {
-        return true;
-    }
+/// Why the results must not take the place of the earlier ones in the folder; empty if they may.
+std::string why_poorer(const std::filesystem::path& folder, const Input& input, Pipeline& pipeline) {
+    const RunWorth run{input.frames(), tracked_frames(pipeline), !input.is_at_end()};
+    const std::string why = why_not_replace(run, worth_in(folder));
+    if (!why.empty() || !pipeline.map().mapper().map().planes.empty()) return why;
+    return may_hold_planes(folder / "plane_map.lcmlog") ? "no planes in its map" : "";
 }
 
 }  // namespace
@@ -203,11 +201,12 @@ Outputs write_outputs(ResultFolder& folder, const std::string& input_name, const
     attempt([&] { outputs.report = report_of(input_name, input, pipeline, clock, about); });
     make(further_results(input, pipeline, outputs.report));
 
-    const bool whole = outputs.failures.empty();
-    const bool poorer = pipeline.map().mapper().map().planes.empty() && holds_planes(folder.path());
+    const bool whole = outputs.failures.empty(), holds_earlier = folder.holds_earlier();
+    if (holds_earlier) outputs.why_aside = why_poorer(folder.path(), input, pipeline);
+    const bool poorer = !outputs.why_aside.empty();
     if (poorer && tracked_frames(pipeline) == 0) {
         attempt([&] { folder.discard(); });
-    } else if (poorer || (!whole && folder.holds_earlier())) {
+    } else if (poorer || (!whole && holds_earlier)) {
         attempt([&] { outputs.folder = folder.set_aside(); });
     } else if (attempt([&] { folder.replace(); })) {
         outputs.folder = folder.path();

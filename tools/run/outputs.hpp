@@ -45,11 +45,13 @@ struct Outputs {
     std::vector<std::string> failures;  ///< a line for each that was not
     std::filesystem::path folder;       ///< where they are; empty: nowhere
     bool kept_earlier = false;          ///< they did not replace those of an earlier run
+    std::string why_aside;              ///< why not, for what they are worth; words to follow a colon
 };
 
 /// Makes all results of a run, its report with what `about` says of it (run_info()); a failure is noted, and
 /// the others are still made. They replace those of an earlier run if they are whole and not poorer: a map
-/// without planes does not replace one with planes. Else they are set aside in a folder of their own, or, if
+/// without planes does not replace one with planes, nor a run that was interrupted or tracked few frames a
+/// better one (why_not_replace()). Else they are set aside in a folder of their own, or, if
 /// no frame was tracked, dropped. Without an earlier run they are put in place, whole or not.
 Outputs write_outputs(ResultFolder& folder, const std::string& input_name, const Input& input,
                       Pipeline& pipeline, const RunClock& clock, const nlohmann::ordered_json& about);

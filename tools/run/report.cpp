@@ -4,9 +4,11 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "core/files.hpp"
 #include "run/losses.hpp"
 #include "run/report_text.hpp"
 #include "run/size_report.hpp"
+#include "sensor/json_file.hpp"
 
 namespace planemap {
 
@@ -41,6 +43,7 @@ void add_tracking(const Json& report, std::string& out) {
     out += number("frames") + " frames: " + number("tracked") + " tracked, " + number("lost") + " lost, " +
            number("broken") + " broken. " + number("keyframes") + " keyframes, " + number("loop_closures") +
            " loop closures, " + number("planes") + " planes.\n\n";
+    if (report.value("interrupted", false)) out += "The run ended before the end of its input.\n\n";
     if (report.contains("accuracy")) {
         const Json& accuracy = report.at("accuracy");
         out += "Against the truth beside the input: ATE " +
@@ -65,9 +68,65 @@ void add_tracking(const Json& report, std::string& out) {
     }
 }
 
+/// A field that a report has, by its JSON pointer.
+struct Field {
+    const char *pointer, *type;
+};
+
+constexpr Field kFields[] = {{"/input", "string"},         {"/frames", "number"},
+                             {"/tracked", "number"},       {"/lost", "number"},
+                             {"/broken", "number"},        {"/keyframes", "number"},
+                             {"/loop_closures", "number"}, {"/planes", "number"},
+                             {"/wall_s", "number"},        {"/cpu_s", "number"},
+                             {"/peak_rss_mb", "number"},   {"/stages_ms", "object"},
+                             {"/sizes_bytes", "object"},   {"/sizes_bytes/plane_map_message", "number"},
+                             {"/octomap", "object"},       {"/coverage", "object"}};
+
+/// Throws std::runtime_error naming the first field that is missing or of another type.
+void check_fields(const Json& report) {
+    const auto fail = [](const std::string& why) {
+        throw std::runtime_error("is no report of planemap-run: " + why);
+    };
+    if (!report.is_object()) fail(std::string("is ") + report.type_name() + ", not object");
+    for (const Field& field : kFields) {
+        const Json::json_pointer at(field.pointer);
+        const std::string name = std::string(field.pointer).substr(1);
+        if (!report.contains(at)) fail(name + " is missing");
+        const std::string type = report.at(at).type_name();
+        if (type != field.type) fail(name + " is " + type + ", not " + field.type);
+    }
+}
+
+/// Why there is no report.json, as far as the folder tells, and what to do.
+std::string why_no_report(const std::filesystem::path& folder) {
+    std::error_code ignored;
+    const auto holds = [&](const char* name) { return std::filesystem::exists(folder / name, ignored); };
+    if (!std::filesystem::exists(folder, ignored)) return "there is no such folder";
+    if (holds(".partial-whole"))
+        return "a run was ended while it put its results in place; they are whole, in " +
+               (folder / ".partial-whole").string() +
+               ", and the next planemap-run into this folder ends that first";
+    if (holds(".partial"))
+        return "a run into this folder goes on or did not end, and the report comes at the end; what it had "
+               "so far is "
+               "in " +
+               (folder / ".partial").string() + ", and the next planemap-run into this folder keeps that";
+    return "is not there: this is no output folder of a planemap-run that ended";
+}
+
 }  // namespace
 
+Json read_report(const std::filesystem::path& folder) {
+    const std::filesystem::path file = folder / "report.json";
+    std::error_code ignored;
+    if (!std::filesystem::exists(file, ignored))
+        throw std::runtime_error(file.string() + ": " + why_no_report(folder));
+    read_json_object(file);  // says where it is wrong, but keeps no order
+    return Json::parse(read_file(file));
+}
+
 std::string report_markdown(const Json& report) {
+    check_fields(report);
     try {
         std::string out = "# planemap: " + report.at("input").get<std::string>() + "\n\n";
         add_tracking(report, out);
@@ -76,7 +135,7 @@ std::string report_markdown(const Json& report) {
         add_times(report, out);
         return out;
     } catch (const Json::exception& error) {
-        throw std::runtime_error(std::string("not a planemap report: ") + error.what());
+        throw std::runtime_error(std::string("is no report of planemap-run: ") + error.what());
     }
 }
 

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "run/report_text.hpp"
+#include "run/worth.hpp"
 
 namespace planemap {
 
@@ -17,7 +18,6 @@ using Json = nlohmann::ordered_json;
 /// steps leave the surface that the frame is laid on.
 constexpr double kSlowStep_s = 0.2;
 constexpr double kScaleOff = 0.02;
-constexpr double kMostTracked = 0.5;  ///< share of the frames below which it is said aloud
 /// A path this many times as wide as its poses err tells its scale; of a smaller one the scale is noise.
 constexpr double kWide = 5;
 
@@ -34,12 +34,13 @@ double median_step_s(const std::vector<OdometryEstimate>& estimates) {
 }  // namespace
 
 std::vector<std::string> warnings_of(const std::vector<OdometryEstimate>& estimates, bool poses_given,
-                                     const Json& report) {
+                                     const std::optional<std::string>& reason_lost, const Json& report) {
     std::vector<std::string> warnings;
-    const double frames = report.value("frames", 0.0), tracked = report.value("tracked", 0.0);
-    if (tracked > 0 && tracked < kMostTracked * frames) {  // of none there is an error
-        warnings.push_back(format("only %.0f", tracked) + format(" of %.0f frames are tracked", frames) +
-                           ": the map is of what these saw");
+    const std::optional<RunWorth> worth = worth_of(report);
+    if (worth && worth->tracked > 0 && worth->tracked_few()) {  // of none there is an error
+        warnings.push_back("only " + std::to_string(worth->tracked) + " of " + std::to_string(worth->frames) +
+                           " frames are tracked: the map is of what these saw" +
+                           (reason_lost ? "; why not the others: " + *reason_lost : ""));
     }
     const double step_s = median_step_s(estimates);
     if (step_s > kSlowStep_s && !poses_given) {

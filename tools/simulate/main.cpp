@@ -4,8 +4,10 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "core/files.hpp"
 #include "messages/process.hpp"
 #include "results/result_folder.hpp"
 #include "results/standard_output.hpp"
@@ -19,15 +21,31 @@ namespace {
 constexpr const char* kTruth = "groundtruth.txt";
 constexpr const char* kPlanes = "planes_truth.json";
 
-/// The truth's names are those of recordings, too: what another simulation left may be replaced, a
-/// recording's own truth may not.
-void refuse_foreign_truth(const std::filesystem::path& folder) {
+/// Name of the log that planes_truth.json says it is of; empty if it does not say.
+std::string log_of_truth(const std::filesystem::path& planes) {
+    try {
+        return nlohmann::json::parse(read_file(planes)).value("log", "");
+    } catch (const std::exception&) {
+        return {};
+    }
+}
+
+/// The truth's names are those of recordings, too, and of other logs' truth: what an earlier simulation of
+/// the same log left may be replaced, nothing else.
+void refuse_foreign_truth(const std::filesystem::path& folder, const std::string& log) {
     std::error_code ignored;
-    const std::filesystem::path truth = folder / kTruth;
-    if (std::filesystem::exists(truth, ignored) && !std::filesystem::exists(folder / kPlanes, ignored)) {
+    const std::filesystem::path truth = folder / kTruth, planes = folder / kPlanes;
+    if (!std::filesystem::exists(planes, ignored)) {
+        if (!std::filesystem::exists(truth, ignored)) return;
         throw std::runtime_error(truth.string() + ": is there, and not of the simulator (there is no " +
                                  kPlanes + "): give --output in another folder");
     }
+    const std::string owner = log_of_truth(planes);
+    // Earlier versions did not name the log.
+    if (owner == log || (owner.empty() && std::filesystem::exists(folder / log, ignored))) return;
+    throw std::runtime_error(truth.string() + ": is the truth of " +
+                             (owner.empty() ? "something else than " + log : owner) +
+                             ": give --output in another folder, a log in each");
 }
 
 /// The name of the log in its folder.
@@ -56,7 +74,7 @@ Simulated make_results(const std::string& world, const SensorShellOptions& optio
     Simulated simulated;
     simulated.total = source->size().value_or(0);
     results.make({kTruth, [&](const auto& file) { write_trajectory(file, source->ground_truth()); }});
-    results.make({kPlanes, [&](const auto& file) { simulator::write_planes_truth(file, source->world()); }});
+    results.make({kPlanes, [&](const auto& file) { simulator::write_planes_truth(file, source->world(), log); }});
     Bus bus("memq://");
     SensorShell sensor(bus, std::move(source), options);
     const auto show = [&](std::int64_t frames) {
@@ -76,13 +94,14 @@ int simulate(const std::string& world, const std::filesystem::path& output,
     simulator::parse_simulator_name(world);  // a wrong name is seen before anything is touched
     const std::string log = log_name(output);
     const std::filesystem::path folder = output.parent_path().empty() ? "." : output.parent_path();
-    refuse_foreign_truth(folder);
+    refuse_foreign_truth(folder, log);
     // What a run that did not end left can be made again, and is large.
     ResultFolder results(folder, {log, kTruth, kPlanes}, "." + log + ".part",
                          ResultFolder::Leftovers::kRemove);
     Simulated simulated;
     try {
         simulated = make_results(world, options, log, results);
+        refuse_foreign_truth(results.path(), log);  // another log's may have come meanwhile
         results.replace();
     } catch (...) {
         results.discard();
