@@ -20,7 +20,12 @@ constexpr const char* kFile = "plane_map.lcmlog";
 }  // namespace
 
 MapShell::MapShell(Bus& bus, const MapShellOptions& options)
-    : bus_(bus), output_(options.output), mapper_(options.map) {
+    : bus_(bus),
+      output_(options.output),
+      mapper_(options.map),
+      watch_(status_, options.start.empty()
+                          ? "the map is incomplete"
+                          : "what they saw is in the map only as far as the map to start from held it") {
     if (!options.start.empty()) mapper_.start_from(read_plane_map(options.start));
     tell_losses();
     status_.lost("fine edges of planes, since the map to start from is very large",
@@ -42,6 +47,7 @@ void MapShell::on_keyframe(const RawMessage& message) {
     const keyframe_t received = decode<keyframe_t>(message.bytes);
     const Keyframe keyframe = from_message(received);
     if (!keyframe_guard_.admits(received.seq, received.utime, message.bytes)) return;
+    watch_.came(keyframe.id, keyframe.previous_id, keyframe.utime);
     mapper_.add(keyframe);
     tell_losses();
     tell();
@@ -55,6 +61,7 @@ void MapShell::on_trajectory(const RawMessage& message) {
         const ModuleStatus::Work work(status_);
         mapper_.update(trajectory);
     }
+    watch_.named(trajectory, now_us());
     tell_losses();
     publish();
 }
@@ -98,6 +105,7 @@ void MapShell::tell() {
 }
 
 int MapShell::poll() {
+    watch_.tell(now_us());
     if (published_us_ != 0 && now_us() - published_us_ >= kRepeat_us) {
         // For those who come late while the camera stands still: the same message again, which is no work.
         bus_.publish(channels::kMap, to_message(mapper_.map(), seq_ - 1));

@@ -109,7 +109,9 @@ Json report_of(const std::string& input_name, const Input& input, Pipeline& pipe
     report["complaints"] = complaints;
     add_sizes(pipeline, input.frames(), report);
     add_accuracy(input, pipeline, report);
-    report["warnings"] = warnings_of(estimates, pipeline.given_poses() != nullptr, report);
+    std::vector<std::string> warnings = warnings_of(estimates, pipeline.given_poses() != nullptr, report);
+    for (const std::string& remark : remarks_of(pipeline)) warnings.push_back(remark);
+    report["warnings"] = warnings;
     report.update(about);
     return report;
 }
