@@ -227,9 +227,10 @@ TEST(OctomapBuilder, ManySmallStepsEndAtTheTreeOfOneBuild) {
             if (chance(15)) {
                 KeyframeTrajectory corrected;
                 for (auto& [id, scan] : scans) {
+                    if (id < static_cast<int>(builder.frozen())) continue;
                     // Near the newest, or all: a small correction and a loop closure.
-                    if (id < static_cast<int>(builder.frozen()) || (id + 4 < next && step % 3 != 0)) continue;
-                    scan.second = pose(0.7 * id + jitter(random), 0.03 * id);
+                    if (id + 4 >= next || step % 3 == 0)
+                        scan.second = pose(0.7 * id + jitter(random), 0.03 * id);
                     corrected.keyframes.push_back({id, 0, scan.second});
                 }
                 builder.update(corrected);

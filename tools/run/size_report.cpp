@@ -113,7 +113,8 @@ std::vector<Row> rows_of(const Json& report) {
              {"octomap_occupied_leaves", octomap + ", occupied leaf centres at 12 B"},
              {"voxel_cloud_1cm", "cloud of 1 cm voxels of the keyframes at 12 B"}});
     }
-    rows.push_back({"raw_cloud", "raw clouds of all frames at 12 B a pixel, with depth or without"});
+    rows.insert(rows.end(),
+                {{"raw_cloud", "raw clouds of all frames at 12 B a pixel, with depth or without"}});
     return rows;
 }
 
