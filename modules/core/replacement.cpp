@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/replacement.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <unordered_set>
 
@@ -30,6 +31,37 @@ std::vector<Replacement> replacements(const std::vector<KeyframePose>& before,
         if (nearest.by >= 0) out.push_back(nearest);
     }
     return out;
+}
+
+void KeyframePoses::update(const std::vector<KeyframePose>& named) {
+    for (const Replacement& gone : replacements(named_, named)) {
+        for (auto& [id, earlier] : replaced_) {
+            if (earlier.by != gone.id) continue;
+            earlier.by = gone.by;
+            earlier.by_from_id = gone.by_from_id * earlier.by_from_id;
+        }
+        replaced_[gone.id] = gone;
+    }
+    named_ = named;
+}
+
+const KeyframePose* KeyframePoses::named(int id) const {
+    const auto found =
+        std::lower_bound(named_.begin(), named_.end(), id,
+                         [](const KeyframePose& pose, int wanted) { return pose.id < wanted; });
+    return found != named_.end() && found->id == id ? &*found : nullptr;
+}
+
+std::optional<Pose> KeyframePoses::pose_of(int id) const {
+    if (const KeyframePose* own = named(id)) return own->world_from_camera;
+    const auto gone = replaced_.find(id);
+    const KeyframePose* by = gone == replaced_.end() ? nullptr : named(gone->second.by);
+    if (by == nullptr) return std::nullopt;
+    return by->world_from_camera * gone->second.by_from_id;
+}
+
+void KeyframePoses::keep_replaced(const std::function<bool(int id)>& is_wanted) {
+    std::erase_if(replaced_, [&](const auto& gone) { return !is_wanted(gone.first); });
 }
 
 }  // namespace planemap

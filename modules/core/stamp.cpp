@@ -2,6 +2,7 @@
 #include "core/stamp.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <limits>
 #include <stdexcept>
 
@@ -119,6 +120,12 @@ std::optional<Stamp> read_stamp(std::string_view text) {
     if (!utime) return {};
     stamp.utime = *utime;
     return stamp;
+}
+
+std::string seconds_text(std::int64_t us) {
+    char text[32];
+    std::snprintf(text, sizeof(text), "%.3f s", static_cast<double>(us) * 1e-6);
+    return text;
 }
 
 std::int64_t StampColumn::read(std::string_view text) {

@@ -12,6 +12,9 @@ namespace planemap {
 
 enum class StampUnit { kSeconds, kMilliseconds, kMicroseconds, kNanoseconds };
 
+/// "12.345 s".
+std::string seconds_text(std::int64_t us);
+
 /// "seconds" and so on.
 const char* unit_name(StampUnit unit);
 

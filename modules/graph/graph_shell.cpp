@@ -8,6 +8,7 @@
 #include "messages/channels.hpp"
 #include "messages/convert.hpp"
 #include "messages/decode.hpp"
+#include "messages/keyframe_watch.hpp"
 
 namespace planemap {
 
@@ -42,6 +43,7 @@ void GraphShell::on_keyframe(const RawMessage& message) {
     } catch (const std::invalid_argument& error) {
         throw MessageError(error.what());
     }
+    remark_new_part(status_, keyframe.id, keyframe.previous_id, keyframe.utime);
     status_.lost(kFeatures, static_cast<std::int64_t>(graph_.counts().features_left_out - left_out));
     publish();
     start_if_due();

@@ -36,7 +36,12 @@ void make_folder(const std::filesystem::path& folder) {
 }  // namespace
 
 MapShell::MapShell(Bus& bus, const MapShellOptions& options)
-    : bus_(bus), output_(options.output), mapper_(options.map) {
+    : bus_(bus),
+      output_(options.output),
+      mapper_(options.map),
+      watch_(status_, options.start.empty()
+                          ? "the map is incomplete"
+                          : "what they saw is in the map only as far as the map to start from held it") {
     if (!options.start.empty()) mapper_.start_from(read_plane_map(options.start));
     tell_losses();
     status_.lost("fine edges of planes, since the map to start from is very large",
@@ -51,6 +56,7 @@ void MapShell::on_keyframe(const RawMessage& message) {
     const keyframe_t received = decode<keyframe_t>(message.bytes);
     const Keyframe keyframe = from_message(received);
     if (!keyframe_guard_.admits(received.seq, received.utime, message.bytes)) return;
+    watch_.came(keyframe.id, keyframe.previous_id, keyframe.utime);
     mapper_.add(keyframe);
     tell_losses();
     tell();
@@ -64,6 +70,7 @@ void MapShell::on_trajectory(const RawMessage& message) {
         const ModuleStatus::Work work(status_);
         mapper_.update(trajectory);
     }
+    watch_.named(trajectory, now_us());
     tell_losses();
     publish();
 }
@@ -107,6 +114,7 @@ void MapShell::tell() {
 }
 
 int MapShell::poll() {
+    watch_.tell(now_us());
     if (published_us_ != 0 && now_us() - published_us_ >= kRepeat_us) {
         // For those who come late while the camera stands still: the same message again, which is no work.
         bus_.publish(channels::kMap, to_message(mapper_.map(), seq_ - 1));

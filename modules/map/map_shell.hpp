@@ -6,6 +6,7 @@
 
 #include "map/map.hpp"
 #include "messages/channels.hpp"
+#include "messages/keyframe_watch.hpp"
 #include "messages/process.hpp"
 #include "messages/stream_guard.hpp"
 
@@ -54,6 +55,7 @@ class MapShell : public Shell {
     ModuleStatus status_{"map"};
     StreamGuard keyframe_guard_{channels::kKeyframe, "keyframes", status_};
     StreamGuard trajectory_guard_{channels::kTrajectory, "trajectories", status_, false};
+    KeyframeWatch watch_;
     MapLosses told_;  ///< what the status knows
     std::int32_t seq_ = 0;
     std::int64_t published_us_ = 0;  ///< wall clock of the last map; 0: none yet

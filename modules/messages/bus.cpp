@@ -13,6 +13,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <fstream>
 #include <stdexcept>
 #include <thread>
@@ -57,18 +58,41 @@ bool is_network_error(int error) {
     }
 }
 
-/// A server that vanishes without a word must not stop a module for ever: the kernel asks an idle one after
-/// five seconds, a message that stops in the middle ends the connection after ten. Sending waits for slow
-/// receivers, that is how nothing is lost.
+/// Without a byte taken or given for so long, a server in the middle of a message counts as hung.
+constexpr int kStall_s = 3;
+
+/// A server that vanishes or hangs without a word must not stop a module: the kernel asks an idle one after
+/// five seconds, a message that stops in the middle ends the connection. Sending waits for slow receivers,
+/// that is how nothing is lost, as long as some bytes go.
 void bound_waiting(int socket) {
     const int on = 1, idle_s = 5, interval_s = 1, count = 5;
-    const timeval receive = {10, 0}, send = {60, 0};
+    const timeval stall = {kStall_s, 0};
+    const unsigned stall_ms = 1000 * kStall_s;
     ::setsockopt(socket, SOL_SOCKET, SO_KEEPALIVE, &on, sizeof(on));
     ::setsockopt(socket, IPPROTO_TCP, TCP_KEEPIDLE, &idle_s, sizeof(idle_s));
     ::setsockopt(socket, IPPROTO_TCP, TCP_KEEPINTVL, &interval_s, sizeof(interval_s));
     ::setsockopt(socket, IPPROTO_TCP, TCP_KEEPCNT, &count, sizeof(count));
-    ::setsockopt(socket, SOL_SOCKET, SO_RCVTIMEO, &receive, sizeof(receive));
-    ::setsockopt(socket, SOL_SOCKET, SO_SNDTIMEO, &send, sizeof(send));
+    // By itself SO_SNDTIMEO starts again for each piece of a message that the kernel finds room for.
+    ::setsockopt(socket, IPPROTO_TCP, TCP_USER_TIMEOUT, &stall_ms, sizeof(stall_ms));
+    ::setsockopt(socket, SOL_SOCKET, SO_RCVTIMEO, &stall, sizeof(stall));
+    ::setsockopt(socket, SOL_SOCKET, SO_SNDTIMEO, &stall, sizeof(stall));
+}
+
+/// Why a server's connection is of no use any more, after a call of liblcm that began at this time and left
+/// this errno (if it did).
+std::string server_loss(std::int64_t began_us, int error) {
+    const bool timed_out = error == ETIMEDOUT || error == EAGAIN;
+    if (!timed_out && now_us() - began_us < std::int64_t{kStall_s} * 1000000) return "the server is gone";
+    return "the server hangs: no byte of a message went for " + std::to_string(kStall_s) + " s";
+}
+
+std::string clock_text(std::int64_t utime) {
+    const std::time_t seconds = utime / 1000000;
+    std::tm parts = {};
+    ::gmtime_r(&seconds, &parts);
+    char text[32];
+    std::strftime(text, sizeof(text), "%Y-%m-%d %H:%M:%S UTC", &parts);
+    return text;
 }
 
 /// The tcpq socket on which liblcm sends or receives just now; -1: none.
@@ -185,8 +209,8 @@ void Bus::wait_and_reconnect(int timeout_ms) {
 std::string Bus::trouble() const {
     std::string text;
     if (lost_us_ > 0) {
-        text = "no connection to " + url() + " for " + std::to_string((now_us() - lost_us_) / 1000000) +
-               " s (" + lost_reason_ + "), trying every second";
+        text = "no connection to " + url() + " since " + clock_text(lost_us_) + " (" + lost_reason_ +
+               "), trying every second";
     }
     if (unsent_ > 0)
         text += (text.empty() ? "" : "; ") + std::to_string(unsent_) + " messages could not be sent";
@@ -201,14 +225,16 @@ void Bus::publish_bytes(const std::string& channel, std::span<const std::uint8_t
     // Of a message in parts, liblcm passes no error on but the last one's errno.
     const bool server = endpoint_.is_network() && !endpoint_.is_multicast();
     const Waiting waiting(server ? lcm_->getFileno() : -1);
+    const std::int64_t began_us = now_us();
     errno = 0;
     const int result = lcm_->publish(channel, bytes.data(), static_cast<unsigned>(bytes.size()));
-    const bool network = !server && endpoint_.is_network() && is_network_error(errno);
+    const int error = errno;
+    const bool network = !server && endpoint_.is_network() && is_network_error(error);
     const bool server_gone = server && result != 0;
     if (result == 0 && !network) return;
     ++unsent_;
     if (network || server_gone) {
-        lose(network ? std::string("cannot send: ") + std::strerror(errno) : "the server is gone");
+        lose(network ? std::string("cannot send: ") + std::strerror(error) : server_loss(began_us, error));
         return;
     }
     complaints_.add("LCM URL '" + url() + "': " + channel + " (" + std::to_string(bytes.size()) +
@@ -262,6 +288,8 @@ bool Bus::handle(int timeout_ms) {
     const int waiting = ready.fd < 0 ? -1 : ::poll(&ready, 1, timeout_ms);
     if (waiting == 0 || (waiting < 0 && errno == EINTR)) return false;
     ++handled_;
+    const std::int64_t began_us = now_us();
+    errno = 0;
     {
         const bool server = endpoint_.is_network() && !endpoint_.is_multicast();
         const Waiting receiving(server ? ready.fd : -1);
@@ -274,7 +302,7 @@ bool Bus::handle(int timeout_ms) {
         return false;
     }
     if (!endpoint_.is_network()) throw std::runtime_error("LCM URL '" + url() + "': receiving failed");
-    lose(endpoint_.is_multicast() ? "receiving failed" : "the server is gone");
+    lose(endpoint_.is_multicast() ? "receiving failed" : server_loss(began_us, errno));
     last_attempt_us_ = 0;  // whatever broke may be whole at once
     return false;
 }

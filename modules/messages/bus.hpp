@@ -27,7 +27,8 @@ struct RawMessage {
 ///
 /// A bus outlives its network. Where there is no connection (no server, an interface that is down), handle()
 /// tries every second to make a new one with the same subscriptions, and what is published meanwhile is
-/// counted and not sent.
+/// counted and not sent. A tcpq server that hangs (takes or gives no byte of a message for three seconds) is
+/// one that there is no connection to; until then sending waits, since a slow one loses nothing.
 class Bus {
   public:
     using Handler = std::function<void(const RawMessage&)>;

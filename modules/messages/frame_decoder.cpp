@@ -9,6 +9,7 @@
 #include <string>
 
 #include "core/registration.hpp"
+#include "core/stamp.hpp"
 #include "messages/channels.hpp"
 #include "messages/convert.hpp"
 #include "messages/decode.hpp"
@@ -329,8 +330,13 @@ Verdict FrameDecoder::judge(const images_t& images, std::uint32_t checksum) {
     const int switches = guard_.switches();
     const Verdict verdict = guard_.judge(message);
     if (!guard_.news().empty()) spdlog::warn("{}", guard_.news());
-    if (guard_.switches() != switches && other_camera_)
-        described_utime_ = images.utime - SenderGuard::kSilence_us;
+    if (guard_.switches() == switches) return verdict;
+    if (other_camera_) described_utime_ = images.utime - SenderGuard::kSilence_us;
+    if (!guard_.news().empty()) {  // without: the same sender after a pause
+        for (const Subscriber& subscriber : subscribers_)
+            subscriber.status->remark("sensor", "the sensor started again, or another took its place, at " +
+                                                    seconds_text(images.utime));
+    }
     return verdict;
 }
 

@@ -57,11 +57,29 @@ void ModuleStatus::lost(const std::string& what, std::int64_t count) {
     if (total >= threshold) spdlog::warn("{}: lost {} {} so far", module_, total, what);
 }
 
+void ModuleStatus::remark(const std::string& kind, const std::string& text) {
+    Remark& remark = remarks_[kind];
+    remark.text = text;
+    if (text.empty()) return;
+    ++remark.times;
+    std::int64_t power = 1;
+    while (power < remark.times) power *= 10;
+    if (power == remark.times) spdlog::warn("{}: {}", module_, text);
+}
+
+std::vector<std::string> ModuleStatus::remarks() const {
+    std::vector<std::string> out;
+    for (const auto& [kind, remark] : remarks_)
+        if (!remark.text.empty()) out.push_back(remark.text);
+    return out;
+}
+
 /// The text with what was lost, and what ails the bus, behind it.
 std::string ModuleStatus::full_text() const {
     std::string text = text_;
     const auto add = [&](const std::string& more) { text += (text.empty() ? "" : "; ") + more; };
     if (!bus_trouble_.empty()) add(bus_trouble_);
+    for (const std::string& remark : remarks()) add(remark);
     for (const auto& [what, count] : losses_) add("lost " + std::to_string(count) + " " + what);
     if (seqs_.restarts() > 0) add("its sender started again, times: " + std::to_string(seqs_.restarts()));
     return text;
@@ -71,8 +89,9 @@ std::string ModuleStatus::full_text() const {
 std::int8_t ModuleStatus::state(std::int64_t now_us) const {
     const std::int64_t inputs = received_ - window_received_, outputs = published_ - window_published_;
     const std::int64_t unusable = dropped_ + decode_errors_ - window_unusable_;
+    if (!is_connected_) return module_status_t::FAILING;  // the bus's trouble says why
     if (came_ == 0 && received_ == 0 && published_ == 0) return module_status_t::WAITING;
-    if (outputs > 0) return module_status_t::RUNNING;
+    if (inputs > 0 && outputs > 0) return module_status_t::RUNNING;
     if (unusable > 0 && unusable >= inputs) return module_status_t::FAILING;
     if (inputs == 0) return module_status_t::IDLE;
     const bool unanswered = unanswered_since_us_ != 0 && now_us - unanswered_since_us_ >= kAnswerUs;
@@ -112,6 +131,7 @@ bool ModuleStatus::publish_if_due(Bus& bus, std::int64_t now_us, bool stopped) {
     if (window_start_us_ == 0) window_start_us_ = now_us;
     if (!stopped && now_us - window_start_us_ < kPeriodUs) return false;
     bus_trouble_ = bus.trouble();
+    is_connected_ = bus.connected();
     last_ = message(now_us, stopped);
     bus.publish(channel_, last_);
     ++seq_;
@@ -130,7 +150,8 @@ bool ModuleStatus::publish_if_due(Bus& bus, std::int64_t now_us, bool stopped) {
 std::string ModuleStatus::line() const {
     static constexpr const char* kStates[] = {"waiting", "running", "idle", "failing", "stopped"};
     // What came since the last status is newer than its state.
-    const bool news = received_ > window_received_ || last_.state == module_status_t::WAITING;
+    const bool news =
+        is_connected_ && (received_ > window_received_ || last_.state == module_status_t::WAITING);
     const std::int8_t now =
         news && last_.state != module_status_t::STOPPED ? state(window_start_us_) : last_.state;
     char line[256];

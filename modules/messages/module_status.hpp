@@ -7,6 +7,7 @@
 #include <optional>
 #include <planemap/module_status_t.hpp>
 #include <string>
+#include <vector>
 
 #include "core/histogram.hpp"
 #include "messages/bus.hpp"
@@ -42,6 +43,11 @@ class ModuleStatus {
     void lost(const std::string& what, std::int64_t count = 1);
     /// What keeps the module from working, or what it found; shown in the status line.
     void set_text(std::string text) { text_ = std::move(text); }
+    /// What is true of all that the module says from now on, e.g. that the sensor started again; shown in the
+    /// status after the text, and told by planemap-run's report. A later remark of the same kind (a word, not
+    /// shown) takes the place of the earlier one; an empty one takes it back. Warned of the first time, and
+    /// the 10th, 100th and so on.
+    void remark(const std::string& kind, const std::string& text);
 
     /// Measures the work on one input from construction to destruction.
     class Work {
@@ -58,6 +64,8 @@ class ModuleStatus {
     };
 
     const std::string& module() const { return module_; }
+    /// The remarks as they are shown.
+    std::vector<std::string> remarks() const;
     std::int64_t received_count() const { return received_; }
     std::int64_t dropped_count() const { return dropped_; }
     std::int64_t decode_error_count() const { return decode_errors_; }
@@ -75,6 +83,11 @@ class ModuleStatus {
     std::string line() const;
 
   private:
+    struct Remark {
+        std::string text;
+        std::int64_t times = 0;
+    };
+
     module_status_t message(std::int64_t now_us, bool stopped) const;
     std::int8_t state(std::int64_t now_us) const;
     std::string full_text() const;
@@ -82,6 +95,8 @@ class ModuleStatus {
     std::string module_, channel_, text_, bus_trouble_;
     std::int64_t came_ = 0, received_ = 0, published_ = 0, dropped_ = 0, decode_errors_ = 0;
     std::map<std::string, std::int64_t> losses_;
+    std::map<std::string, Remark> remarks_;  ///< by kind
+    bool is_connected_ = true;               ///< the bus, at the last status
     SeqCounter seqs_;
     Histogram work_ms_, work_cpu_ms_, window_ms_;
     // Since the last status.

@@ -4,7 +4,8 @@
 #include <libdeflate.h>
 
 #include <algorithm>
-#include <cstdio>
+
+#include "core/stamp.hpp"
 
 namespace planemap {
 
@@ -41,12 +42,6 @@ bool is_after(const Message& from, const Message& to) {
 
 /// Longer steps from message to message are not usual, and times a count they must not overflow.
 constexpr std::int64_t kLongestStep_us = std::int64_t{3600} * 1000000;
-
-std::string seconds_text(std::int64_t us) {
-    char text[32];
-    std::snprintf(text, sizeof(text), "%.3f s", static_cast<double>(us) * 1e-6);
-    return text;
-}
 
 }  // namespace
 

@@ -49,16 +49,17 @@ bool OctomapBuilder::keep(int keyframe_id, std::shared_ptr<const StoredScan> sca
 }
 
 bool OctomapBuilder::update(const KeyframeTrajectory& trajectory) {
-    for (const KeyframePose& named : trajectory.keyframes) {
-        const auto found = keyframes_.find(named.id);
-        if (found == keyframes_.end() || !is_valid(named.world_from_camera)) continue;
-        Keyframe& keyframe = found->second;
-        const Pose change = keyframe.world_from_camera.inverse(Eigen::Isometry) * named.world_from_camera;
+    poses_.update(trajectory.keyframes);
+    poses_.keep_replaced([this](int id) { return keyframes_.contains(id); });
+    for (auto& [id, keyframe] : keyframes_) {
+        const std::optional<Pose> now = poses_.pose_of(id);
+        if (!now || !is_valid(*now)) continue;
+        const Pose change = keyframe.world_from_camera.inverse(Eigen::Isometry) * *now;
         if (change.translation().norm() <= options_.moved_m &&
             rotation_angle(change) <= options_.moved_deg * std::numbers::pi / 180) {
             continue;
         }
-        keyframe.world_from_camera = named.world_from_camera;
+        keyframe.world_from_camera = *now;
         if (keyframe.inside) mark_misplaced(keyframe);
     }
     return rebuild_due();

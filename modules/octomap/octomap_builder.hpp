@@ -14,6 +14,7 @@
 #include "core/camera.hpp"
 #include "core/image.hpp"
 #include "core/keyframe.hpp"
+#include "core/replacement.hpp"
 #include "octomap/octomap_sizes.hpp"
 #include "octomap/scan_insertion.hpp"
 #include "octomap/stored_scan.hpp"
@@ -57,7 +58,9 @@ class OctomapBuilder {
              const Pose& world_from_camera);
 
     /// Takes new poses. Returns true when a rebuild is due, because keyframes moved; flush() carries it out,
-    /// so that many corrections cost one rebuild. Frozen keyframes stay where they are.
+    /// so that many corrections cost one rebuild. One that the last trajectory named and this one does not
+    /// was replaced: its depth moves with the keyframe nearest to it (KeyframePoses). Frozen ones stay where
+    /// they are.
     bool update(const KeyframeTrajectory& trajectory);
 
     /// Rebuilds if it is due, and brings inner nodes up to date and prunes.
@@ -84,6 +87,8 @@ class OctomapBuilder {
     OctomapSizes sizes() const { return sizes_of(*tree_); }
     /// The bytes of a .bt file: maximum likelihood, pruned.
     std::string bt() const { return bt_of(*tree_); }
+    /// The same with the occupied space only.
+    std::string bt_occupied() const { return bt_occupied_of(*tree_); }
     /// The bytes of an .ot file.
     std::string ot() const { return ot_of(*tree_); }
     /// Centres of all occupied cells of the smallest leaf's size, world frame, metres.
@@ -150,6 +155,7 @@ class OctomapBuilder {
     std::map<int, Keyframe> keyframes_;      ///< by id
     std::unique_ptr<octomap::OcTree> base_;  ///< of the frozen keyframes; null while there are none
     std::unique_ptr<octomap::OcTree> tree_;
+    KeyframePoses poses_;               ///< by the trajectories
     std::optional<int> last_inserted_;  ///< highest id in tree_: higher ones are still to be inserted
     std::optional<int> last_frozen_;
     BlockSet dirty_;             ///< blocks to be built anew for keyframes that are not kept any more

@@ -68,6 +68,7 @@ void OctomapShell::drop(const char* reason, std::int64_t count) {
 void OctomapShell::on_keyframe(const RawMessage& message) {
     const keyframe_t received = decode<keyframe_t>(message.bytes);
     if (!keyframe_guard_.admits(received.seq, received.utime, message.bytes)) return;
+    watch_.came(received.id, received.previous_id, received.utime);
     const auto recent = std::find_if(recent_.begin(), recent_.end(),
                                      [&](const Recent& r) { return r.frame->utime() == received.utime; });
     if (recent == recent_.end()) return drop("keyframes whose frame was gone");
@@ -87,6 +88,7 @@ void OctomapShell::on_trajectory(const RawMessage& message) {
     const trajectory_t received = decode<trajectory_t>(message.bytes);
     const KeyframeTrajectory trajectory = from_message(received);
     if (!trajectory_guard_.admits(received.seq, std::nullopt, message.bytes)) return;
+    watch_.named(trajectory, now_us());
     last_utime_ = trajectory.utime;
     last_revision_ = trajectory.revision;
     if (!worker_) builder_->update(trajectory);
@@ -118,6 +120,7 @@ void OctomapShell::add(int id, const Waiting& keyframe, const Pose& world_from_c
 
 int OctomapShell::poll() {
     constexpr int kIdleMs = 100;
+    watch_.tell(now_us());
     if (worker_) {
         if (const auto state = worker_->newer_state()) publish(*state);
     } else if (unpublished_ && now_us() - last_publish_us_ >= kPublishPeriodUs) {

@@ -9,6 +9,7 @@
 #include "core/keyframe.hpp"
 #include "messages/channels.hpp"
 #include "messages/frame_decoder.hpp"
+#include "messages/keyframe_watch.hpp"
 #include "messages/process.hpp"
 #include "messages/stream_guard.hpp"
 #include "octomap/octomap_builder.hpp"
@@ -68,6 +69,7 @@ class OctomapShell : public Shell {
     ModuleStatus status_{"octomap"};
     StreamGuard keyframe_guard_{channels::kKeyframe, "keyframes", status_};
     StreamGuard trajectory_guard_{channels::kTrajectory, "trajectories", status_, false};
+    KeyframeWatch watch_{status_, "the OctoMap is incomplete"};
     std::deque<Recent> recent_;
     std::size_t recent_bytes_ = 0;
     std::map<int, Waiting> waiting_;  ///< by keyframe id

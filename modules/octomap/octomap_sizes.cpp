@@ -2,6 +2,7 @@
 #include "octomap/octomap_sizes.hpp"
 
 #include <sstream>
+#include <vector>
 
 namespace planemap {
 
@@ -52,6 +53,9 @@ class Census {
         sizes.occupied_voxels = occupied_voxels_;
         return sizes;
     }
+
+    /// Of the tree that the .bt file of the occupied space holds.
+    const Nodes& occupied() const { return occupied_; }
 
   private:
     /// What a node is once each leaf is either free or occupied and equal siblings are one.
@@ -108,6 +112,39 @@ std::string bt_of(const octomap::OcTree& tree) {
     out << header(kBtKind, likely, likely.size());
     if (likely.size() > 0) likely.writeBinaryData(out);
     return std::move(out).str();
+}
+
+namespace {
+
+/// Two bytes an inner node, as OctoMap writes them: of each child two bits, 00 unknown, 01 free, 10 occupied
+/// (the lower bit first), 11 an inner node, which follows.
+void write_occupied(const octomap::OcTree& tree, const octomap::OcTreeNode* node, std::string& out) {
+    unsigned bits = 0;
+    std::vector<const octomap::OcTreeNode*> inner;
+    for (unsigned i = 0; i < 8; ++i) {
+        if (!tree.nodeChildExists(node, i)) continue;
+        const octomap::OcTreeNode* child = tree.getNodeChild(node, i);
+        // Of an inner node this is the most likely of its leaves: whether it holds an occupied one.
+        if (!tree.isNodeOccupied(child)) continue;
+        const bool is_inner = tree.nodeHasChildren(child);
+        bits |= (is_inner ? 3U : 2U) << 2 * i;
+        if (is_inner) inner.push_back(child);
+    }
+    out += static_cast<char>(bits & 255);
+    out += static_cast<char>(bits >> 8);
+    for (const octomap::OcTreeNode* child : inner) write_occupied(tree, child, out);
+}
+
+}  // namespace
+
+std::string bt_occupied_of(const octomap::OcTree& tree) {
+    octomap::OcTree likely(tree);
+    likely.toMaxLikelihood();
+    likely.prune();
+    std::string out = header(kBtKind, likely, Census(tree).occupied().count());
+    if (const octomap::OcTreeNode* root = likely.getRoot(); root != nullptr && likely.isNodeOccupied(root))
+        write_occupied(likely, root, out);
+    return out;
 }
 
 std::string ot_of(const octomap::OcTree& tree) {

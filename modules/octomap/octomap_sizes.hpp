@@ -28,6 +28,8 @@ OctomapSizes sizes_of(const octomap::OcTree& tree);
 
 /// The bytes of a .bt file: maximum likelihood, pruned.
 std::string bt_of(const octomap::OcTree& tree);
+/// The same with the occupied space only: free space is left out as if it were not known.
+std::string bt_occupied_of(const octomap::OcTree& tree);
 /// The bytes of an .ot file.
 std::string ot_of(const octomap::OcTree& tree);
 

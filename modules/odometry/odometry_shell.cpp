@@ -6,6 +6,7 @@
 
 #include "messages/channels.hpp"
 #include "messages/decode.hpp"
+#include "messages/keyframe_watch.hpp"
 
 namespace planemap {
 
@@ -125,7 +126,10 @@ void OdometryShell::process(const Waiting& input) {
     bus_.publish(channels::kOdometry, to_message(result.estimate, odometry_seq_++));
     if (result.estimate.status != TrackingStatus::kLost)
         bus_.publish(channels::kPose, to_pose_message(result.estimate));
-    if (result.keyframe) bus_.publish(channels::kKeyframe, to_message(*result.keyframe, keyframe_seq_++));
+    if (const auto& keyframe = result.keyframe) {
+        bus_.publish(channels::kKeyframe, to_message(*keyframe, keyframe_seq_++));
+        remark_new_part(status_, keyframe->id, keyframe->previous_id, keyframe->utime);
+    }
     status_.published();
     const bool is_lost = result.estimate.status == TrackingStatus::kLost;
     const char* const fault = is_lost ? fault_of_depth(frame) : nullptr;

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "core/replacement.hpp"
 #include "messages/channels.hpp"
 #include "messages/convert.hpp"
 #include "messages/decode.hpp"
@@ -26,13 +25,12 @@ Pipeline::Pipeline(Bus& bus, const PipelineOptions& options)
         if (!keep) estimates_.clear();
         estimates_.push_back(from_message(decode<odometry_t>(message.bytes)));
     });
-    if (graph_ && options.keep_estimates) {
-        bus_.subscribe(channels::kTrajectory, [this](const RawMessage& message) {
-            const KeyframeTrajectory now = from_message(decode<trajectory_t>(message.bytes));
-            for (const Replacement& replacement : replacements(named_, now.keyframes))
-                replaced_[replacement.id] = replacement;
-            named_ = now.keyframes;
-        });
+    if (graph_) {
+        bus_.subscribe(channels::kTrajectory,
+                       [this, keep = options.keep_estimates](const RawMessage& message) {
+                           if (!keep) poses_.keep_replaced([](int) { return false; });
+                           poses_.update(from_message(decode<trajectory_t>(message.bytes)).keyframes);
+                       });
     }
 }
 
@@ -51,21 +49,6 @@ const KeyframeTrajectory& Pipeline::keyframes() const {
     return given_poses_ ? given_poses_->keyframes() : graph_->graph().trajectory();
 }
 
-/// World pose of a keyframe, also of one that the graph replaced.
-std::optional<Pose> Pipeline::keyframe_pose(int id) const {
-    Pose keyframe_from_asked = Pose::Identity();
-    for (auto gone = replaced_.find(id); gone != replaced_.end(); gone = replaced_.find(id)) {
-        keyframe_from_asked = gone->second.by_from_id * keyframe_from_asked;
-        id = gone->second.by;
-    }
-    const std::vector<KeyframePose>& keyframes = graph_->graph().trajectory().keyframes;
-    const auto keyframe =
-        std::lower_bound(keyframes.begin(), keyframes.end(), id,
-                         [](const KeyframePose& pose, int wanted) { return pose.id < wanted; });
-    if (keyframe == keyframes.end() || keyframe->id != id) return std::nullopt;
-    return keyframe->world_from_camera * keyframe_from_asked;
-}
-
 Trajectory Pipeline::trajectory() const {
     Trajectory trajectory;
     if (given_poses_) {
@@ -78,7 +61,7 @@ Trajectory Pipeline::trajectory() const {
     const Pose world_from_odom = graph_ ? graph_->graph().trajectory().world_from_odom : Pose::Identity();
     for (const OdometryEstimate& estimate : estimates_) {
         if (estimate.status == TrackingStatus::kLost) continue;
-        const std::optional<Pose> keyframe = graph_ ? keyframe_pose(estimate.keyframe_id) : std::nullopt;
+        const std::optional<Pose> keyframe = poses_.pose_of(estimate.keyframe_id);
         trajectory.push_back({estimate.pose_utime, keyframe ? *keyframe * estimate.keyframe_from_camera
                                                             : world_from_odom * estimate.odom_from_camera});
     }

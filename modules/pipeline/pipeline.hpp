@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -72,8 +71,6 @@ class Pipeline {
     OctomapShell* octomap() { return octomap_.get(); }
 
   private:
-    std::optional<Pose> keyframe_pose(int id) const;
-
     Bus& bus_;
     std::shared_ptr<FrameDecoder> decoder_;
     SegmentationShell segmentation_;
@@ -83,8 +80,7 @@ class Pipeline {
     std::unique_ptr<MapShell> map_;
     std::unique_ptr<OctomapShell> octomap_;
     std::vector<OdometryEstimate> estimates_;
-    std::vector<KeyframePose> named_;      ///< by the graph's newest trajectory
-    std::map<int, Replacement> replaced_;  ///< keyframes that it no longer names
+    KeyframePoses poses_;  ///< by the graph's trajectories
 };
 
 }  // namespace planemap

@@ -114,7 +114,7 @@ const fs::path& file_of(const ListedFrame& frame) {
     return frame.depth.file;
 }
 
-std::string seconds_text(std::int64_t us) {
+std::string gap_text(std::int64_t us) {
     char text[64];
     std::snprintf(text, sizeof(text), "%.6g s", static_cast<double>(us) * 1e-6);
     return text;
@@ -133,7 +133,7 @@ void check_step(const std::vector<Entry>& entries, const std::string& unit, cons
     std::nth_element(steps.begin(), middle, steps.end());
     if (*middle >= kLeastUs && *middle <= kMostUs) return;
     throw std::runtime_error(
-        file.string() + ": the median step between its timestamps is " + seconds_text(*middle) +
+        file.string() + ": the median step between its timestamps is " + gap_text(*middle) +
         " if they are in " + unit +
         ", as their size says (over 1e11 milliseconds, over 1e14 microseconds, over 1e17 nanoseconds, else "
         "seconds); a camera's is 1 ms to 60 s: write them in seconds");
@@ -249,9 +249,9 @@ std::string left_over(const std::vector<ListedFrame>& frames, const std::vector<
     std::string text;
     if (alone > 0) {
         text = std::to_string(alone) + " of " + std::to_string(frames.size()) +
-               " depth images have no colour image of their own within " + seconds_text(max_gap_us);
+               " depth images have no colour image of their own within " + gap_text(max_gap_us);
         const auto gap = nearest_gap(frames, color);
-        if (gap && *gap > max_gap_us) text += " (the nearest is " + seconds_text(*gap) + " away)";
+        if (gap && *gap > max_gap_us) text += " (the nearest is " + gap_text(*gap) + " away)";
         text += "; those frames are used without colour";
     }
     if (unused > 0) {

@@ -33,5 +33,26 @@ TEST(Replacements, OfAnotherGraphSayNothing) {
     EXPECT_TRUE(replacements({at_x(0, 0)}, {at_x(0, 1), at_x(1, 1)}).empty());
 }
 
+TEST(KeyframePoses, AReplacedKeyframeMovesWithItsReplacementAndWithThatOnesOwn) {
+    KeyframePoses poses;
+    poses.update({at_x(0, 0), at_x(1, 1), at_x(2, 1.1), at_x(3, 1.3)});
+    EXPECT_FALSE(poses.pose_of(4));
+    poses.update({at_x(0, 0), at_x(2, 1.1), at_x(3, 1.3)});
+    EXPECT_NEAR(poses.pose_of(1)->translation().x(), 1, 1e-12);
+    poses.update({at_x(0, 0), at_x(2, 2.1), at_x(3, 2.3)});
+    EXPECT_NEAR(poses.pose_of(1)->translation().x(), 2, 1e-12);
+    poses.update({at_x(0, 0), at_x(3, 3.3)});  // 2 goes and 3 moves at once
+    EXPECT_NEAR(poses.pose_of(1)->translation().x(), 3, 1e-12);
+    EXPECT_NEAR(poses.pose_of(2)->translation().x(), 3.1, 1e-12);
+    poses.update({at_x(0, 0), at_x(3, 1.3, 0.5)});
+    const Pose turned = at_x(3, 1.3, 0.5).world_from_camera * at_x(3, 1.3).world_from_camera.inverse();
+    EXPECT_TRUE(poses.pose_of(1)->isApprox(turned * at_x(1, 1).world_from_camera, 1e-12));
+    poses.keep_replaced([](int id) { return id == 1; });
+    EXPECT_TRUE(poses.pose_of(1));
+    EXPECT_FALSE(poses.pose_of(2));
+    poses.update({at_x(7, 0)});
+    EXPECT_FALSE(poses.pose_of(1)) << "another graph says nothing";
+}
+
 }  // namespace
 }  // namespace planemap

@@ -96,6 +96,23 @@ TEST_F(GraphShellTest, AnOdometryThatStartedAgainIsNotTakenForTheFirst) {
         << shell.status().line();
 }
 
+TEST_F(GraphShellTest, SaysThatAPartBegins) {
+    GraphShell shell(bus_, {});
+    Keyframe keyframe;
+    keyframe.covariance = Matrix6d::Identity() * 1e-4;
+    for (int id = 0; id < 4; ++id) {
+        keyframe.id = id;
+        keyframe.previous_id = id == 2 ? -1 : id - 1;
+        keyframe.utime = keyframe.pose_utime = 1000000 * (id + 1);
+        bus_.publish(channels::kKeyframe, to_message(keyframe, id));
+        bus_.drain();
+        EXPECT_EQ(shell.status().remarks().size(), id < 2 ? 0u : 1u) << id;
+    }
+    EXPECT_NE(shell.status().line().find("4 keyframes, 0 loop closures; keyframe 2, at 3.000 s"),
+              std::string::npos)
+        << shell.status().line();
+}
+
 TEST_F(GraphShellTest, WhatItLeavesOutIsCounted) {
     GraphShell shell(bus_, {});
     const auto trajectories = collect<trajectory_t>(channels::kTrajectory);

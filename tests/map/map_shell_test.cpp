@@ -202,6 +202,21 @@ TEST_F(MapShellTest, TheLastMapIsRepeatedAndARepeatedTrajectoryIsNoWork) {
     EXPECT_EQ(late->back().n_planes, 2);
 }
 
+TEST_F(MapShellTest, AMapThatWasStartedAgainSaysWhatItLacks) {
+    MapShell shell(bus_, {});
+    KeyframeTrajectory all = trajectory();
+    all.keyframes.insert(all.keyframes.begin(), {{0, 1000, Pose::Identity()}, {2, 2000, Pose::Identity()}});
+    bus_.publish(channels::kKeyframe, to_message(test::sample_keyframe(), 0));
+    bus_.publish(channels::kTrajectory, to_message(all, 0));
+    bus_.drain();
+    std::this_thread::sleep_for(std::chrono::milliseconds(1050));
+    shell.poll();
+    EXPECT_NE(shell.status().line().find(
+                  "2 keyframes of the trajectory were never received: the map is incomplete"),
+              std::string::npos)
+        << shell.status().line();
+}
+
 TEST_F(MapShellTest, AnotherOdometrysKeyframeWithAKnownIdIsNotUsed) {
     MapShell shell(bus_, {});
     Keyframe keyframe = test::sample_keyframe();

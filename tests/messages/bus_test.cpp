@@ -168,6 +168,29 @@ TEST(Bus, AServerThatVanishesWhileASenderDoesNotListenIsNoticed) {
     EXPECT_FALSE(bus.handle(0));
 }
 
+/// A server that hangs is noticed without being asked, and found again when it goes on.
+TEST(Bus, AServerThatHangsIsLeftAndFoundAgain) {
+    test::TcpqServer server;
+    Bus bus(server.url());
+    ASSERT_TRUE(bus.connected());
+    server.take_no_more();
+    const auto start = std::chrono::steady_clock::now();
+    int sent = 0;
+    for (; sent < 100 && bus.connected(); ++sent) bus.publish_bytes("A", std::vector<std::uint8_t>(1 << 20));
+    EXPECT_FALSE(bus.connected());
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(6));
+    EXPECT_NE(bus.trouble().find("the server hangs"), std::string::npos) << bus.trouble();
+    bus.publish_bytes("A", std::vector<std::uint8_t>(1));
+    EXPECT_EQ(bus.unsent(), 2) << "of " << sent;
+    bus.handle(1000);
+    bus.handle(1000);
+    EXPECT_NE(bus.trouble().find("does not answer as an LCM server"), std::string::npos) << bus.trouble();
+    server.go_on();
+    EXPECT_TRUE(handle_until({&bus}, [&] { return bus.connected(); }));
+    bus.publish_bytes("A", std::vector<std::uint8_t>(1));
+    EXPECT_EQ(bus.unsent(), 2);
+}
+
 /// A server that takes no more holds a sender up, so that nothing is lost, but not for longer than is wanted.
 TEST(Bus, WaitingForAServerCanBeInterrupted) {
     test::TcpqServer server;
@@ -246,6 +269,13 @@ TEST(Bus, TheStatusTellsWhatAilsTheBus) {
     EXPECT_TRUE(status.publish_if_due(bus, 3000000));
     EXPECT_NE(status.line().find("7 planes; no connection to tcpq://127.0.0.1"), std::string::npos)
         << status.line();
+    EXPECT_NE(status.line().find(" UTC ("), std::string::npos) << "since when: " << status.line();
+    status.received();
+    status.published();
+    status.publish_if_due(bus, 4000000);
+    EXPECT_EQ(status.line().rfind("failing", 0), 0u) << status.line();
+    status.received();
+    EXPECT_EQ(status.line().rfind("failing", 0), 0u) << status.line();
 }
 
 TEST(Bus, ALogThatIsReadToItsEndEndsTheBus) {

@@ -144,6 +144,26 @@ TEST_F(Subscribed, TheSecondOfTwoSendersIsIgnoredWhileTheFirstLives) {
     EXPECT_EQ(status_.decode_error_count(), 0) << "of whatever size its images are";
 }
 
+/// With stamps that go on or jump, to either side: what is said from then on is not of the same run.
+TEST_F(Subscribed, ARestartedSensorIsSaid) {
+    std::int64_t utime = 1000000;
+    for (std::uint32_t i = 0; i < 10; ++i) publish({utime += 33333, i, 1});
+    EXPECT_TRUE(status_.remarks().empty());
+    std::uint64_t sender = 1;
+    for (const std::int64_t jump : std::initializer_list<std::int64_t>{33333, 3600000000, -1800000000}) {
+        utime += jump;
+        ++sender;
+        const std::size_t before = frames_.size();
+        for (std::uint32_t i = 0; i < 100; ++i) publish({utime += 33333, i, sender});
+        ASSERT_GT(frames_.size(), before) << "followed after two seconds of silence of the first";
+        ASSERT_EQ(status_.remarks().size(), 1u);
+        EXPECT_NE(status_.remarks()[0].find("the sensor started again"), std::string::npos);
+        char when[32];
+        std::snprintf(when, sizeof(when), "at %.3f s", 1e-6 * static_cast<double>(frames_[before]->utime()));
+        EXPECT_NE(status_.remarks()[0].find(when), std::string::npos) << status_.remarks()[0] << when;
+    }
+}
+
 TEST_F(Subscribed, AnotherCameraIsNotTakenWhileTheFirstIsDescribed) {
     for (int i = 0; i < 150; ++i) {
         if (i % 30 == 0) publish(camera_);

@@ -137,6 +137,29 @@ TEST_F(Status, TellsWhatWasLost) {
     EXPECT_EQ(status_.losses().size(), 2u);
 }
 
+TEST_F(Status, RunningMeansThatInputIsHandledNow) {
+    at(1);
+    status_.received();
+    status_.published();
+    EXPECT_EQ(at(2).state, module_status_t::RUNNING);
+    status_.published();  // of what came before
+    EXPECT_EQ(at(3).state, module_status_t::IDLE);
+    EXPECT_EQ(last_.rate_hz, 0);
+}
+
+TEST_F(Status, ARemarkStaysUntilAnotherOfItsKind) {
+    status_.set_text("well");
+    status_.remark("sensor", "the sensor started again at 1 s");
+    status_.remark("part", "a part");
+    at(1);
+    status_.set_text("better");
+    status_.remark("sensor", "the sensor started again at 2 s");
+    EXPECT_EQ(at(2).text, "better; a part; the sensor started again at 2 s");
+    status_.remark("part", "");
+    EXPECT_EQ(at(3).text, "better; the sensor started again at 2 s");
+    EXPECT_EQ(status_.remarks().size(), 1u);
+}
+
 TEST_F(Status, OnceASecond) {
     EXPECT_FALSE(status_.publish_if_due(bus_, 1000000));
     EXPECT_FALSE(status_.publish_if_due(bus_, 1900000));

@@ -52,6 +52,7 @@ class TcpqServer {
     std::string url() const { return "tcpq://127.0.0.1:" + std::to_string(port_); }
     /// Leaves what comes from now on in the kernel, as a server does that hangs.
     void take_no_more() { hung_ = true; }
+    void go_on() { hung_ = false; }
     int subscriptions() const { return subscriptions_; }  ///< that clients asked for so far
 
   private:

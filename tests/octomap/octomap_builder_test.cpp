@@ -83,6 +83,31 @@ TEST(OctomapBuilder, RebuildAfterACorrectionEqualsAFreshTree) {
     EXPECT_EQ(corrected.voxel_cloud_size(0.01), fresh.voxel_cloud_size(0.01));
 }
 
+/// What a replaced keyframe saw would stay behind as a second wall.
+TEST(OctomapBuilder, AReplacedKeyframesDepthMovesWithItsReplacement) {
+    const CameraInfo camera = small_camera();
+    const std::vector<Pose> before{pose(0, 0), pose(0.02, 0.01), pose(0.04, 0.02), pose(0.06, 0.03)};
+    const Pose correction = pose(0.4, 0.1);
+    OctomapBuilder corrected, fresh;
+    for (int id = 0; id < 4; ++id) {
+        corrected.add(id, room(camera), camera, before[static_cast<std::size_t>(id)]);
+        fresh.add(id, room(camera), camera, correction * before[static_cast<std::size_t>(id)]);
+    }
+    KeyframeTrajectory named = trajectory(before);
+    corrected.update(named);
+    for (const int gone : {1, 2}) {  // 1 by 2, or 0; then 2 by another
+        std::erase_if(named.keyframes, [&](const KeyframePose& keyframe) { return keyframe.id == gone; });
+        EXPECT_FALSE(corrected.update(named)) << "nothing moved";
+    }
+    for (KeyframePose& keyframe : named.keyframes)
+        keyframe.world_from_camera = correction * keyframe.world_from_camera;
+    EXPECT_TRUE(corrected.update(named));
+    corrected.flush();
+    fresh.flush();
+    EXPECT_EQ(corrected.keyframes_in_tree(), 4u);
+    EXPECT_TRUE(corrected.tree() == fresh.tree());
+}
+
 TEST(OctomapBuilder, SmallCorrectionsCostNothingUntilTheyAddUp) {
     OctomapBuilder builder;
     builder.add(0, room(small_camera()), small_camera(), pose(0, 0));
@@ -202,9 +227,10 @@ TEST(OctomapBuilder, ManySmallStepsEndAtTheTreeOfOneBuild) {
             if (chance(15)) {
                 KeyframeTrajectory corrected;
                 for (auto& [id, scan] : scans) {
+                    if (id < static_cast<int>(builder.frozen())) continue;
                     // Near the newest, or all: a small correction and a loop closure.
-                    if (id < static_cast<int>(builder.frozen()) || (id + 4 < next && step % 3 != 0)) continue;
-                    scan.second = pose(0.7 * id + jitter(random), 0.03 * id);
+                    if (id + 4 >= next || step % 3 == 0)
+                        scan.second = pose(0.7 * id + jitter(random), 0.03 * id);
                     corrected.keyframes.push_back({id, 0, scan.second});
                 }
                 builder.update(corrected);

@@ -91,6 +91,21 @@ TEST_F(OctomapShellTest, AKeyframeThatNeverGotAPoseIsCounted) {
     EXPECT_EQ(shell.status().losses().at("keyframes that never got a pose"), 1);
 }
 
+TEST_F(OctomapShellTest, AnOctoMapThatWasStartedAgainSaysWhatItLacks) {
+    OctomapShell shell(bus_, std::make_shared<FrameDecoder>(bus_), {});
+    publish_camera();
+    for (int id = -3; id < 0; ++id) trajectory_.keyframes.push_back({10 + id, 10 + id, Pose::Identity()});
+    trajectory_.utime = 9;
+    bus_.publish(channels::kTrajectory, to_message(trajectory_, seq_++));
+    bus_.drain();
+    std::this_thread::sleep_for(std::chrono::milliseconds(1050));
+    shell.poll();
+    EXPECT_NE(shell.status().line().find(
+                  "3 keyframes of the trajectory were never received: the OctoMap is incomplete"),
+              std::string::npos)
+        << shell.status().line();
+}
+
 TEST_F(OctomapShellTest, FrozenKeyframesAreCounted) {
     OctomapOptions options;
     options.max_keyframes = 2;

@@ -74,6 +74,7 @@ TEST(OctomapSizes, TheOccupiedPartIsTheFileWithoutFreeSpace) {
     occupied.prune();
     const OctomapSizes sizes = sizes_of(tree);
     EXPECT_EQ(sizes.bt_occupied_bytes, bt_of(occupied).size());
+    EXPECT_EQ(bt_occupied_of(tree), bt_of(occupied)) << "byte by byte";
     EXPECT_LT(sizes.bt_occupied_bytes, sizes.bt_bytes);
 }
 
@@ -85,6 +86,7 @@ TEST(OctomapSizes, OfAnEmptyTreeAreItsHeaders) {
     EXPECT_EQ(sizes.bt_bytes, bt_of(tree).size());
     EXPECT_EQ(sizes.bt_occupied_bytes, bt_of(tree).size());
     EXPECT_EQ(sizes.ot_bytes, ot_of(tree).size());
+    EXPECT_EQ(bt_occupied_of(tree), bt_of(tree));
 }
 
 }  // namespace

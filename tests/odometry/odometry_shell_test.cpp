@@ -39,6 +39,28 @@ TEST_F(OdometryShellTest, TracksAmongCorruptMessages) {
     EXPECT_EQ(shell.status().decode_error_count(), 20 * kCorrupt);
 }
 
+TEST_F(OdometryShellTest, SaysThatTheSensorStartedAgainAndWhatItsPosesAreThen) {
+    OdometryShell shell(bus_, std::make_shared<FrameDecoder>(bus_), {});
+    const auto keyframes = collect<keyframe_t>(channels::kKeyframe);
+    publish_camera();
+    for (const int start : {500000000, 1000000}) {
+        for (int i = 0; i < 10; ++i) {
+            bus_.publish(channels::kFrame, frame(start + 33333 * i));
+            publish_regions(start + 33333 * i);
+            bus_.drain();
+        }
+        const std::vector<std::string> remarks = shell.status().remarks();
+        if (start == 500000000) {
+            EXPECT_TRUE(remarks.empty());
+            continue;
+        }
+        ASSERT_EQ(remarks.size(), 2u);
+        EXPECT_NE(remarks[0].find("not known relative to those before"), std::string::npos) << remarks[0];
+        EXPECT_NE(remarks[1].find("the sensor started again"), std::string::npos) << remarks[1];
+    }
+    EXPECT_EQ(keyframes->back().previous_id, -1);
+}
+
 TEST_F(OdometryShellTest, AFrameWaitsForItsRegionsButNotForEver) {
     OdometryShell shell(bus_, std::make_shared<FrameDecoder>(bus_), {});
     const auto estimates = collect<odometry_t>(channels::kOdometry);

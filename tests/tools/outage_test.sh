@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # outage_test.sh BIN: the modules as separate processes outlive their network and disk.
 #   1. tcpq without a server: all wait, say so once, and stop within a second when told to; with a server that comes,
-#      is killed and comes again, a map comes out.
-#   2. udpm, with the interface down for two seconds in the middle: a map comes out.
+#      is killed and comes again, a map comes out; one that hangs is left, and a stop does not wait for it.
+#   2. udpm, with the interface down for two seconds in the middle: a map comes out. A sensor and a map that start again
+#      are said.
 #   3. The output folder is gone, with a file in its place: planemap-map goes on, and ends with code 1 and one line.
 # Exits with 77, ctest's code for a skipped test, where there is no network namespace to take down.
 set -euo pipefail
@@ -110,6 +111,22 @@ if command -v java >/dev/null && [[ -f /usr/share/java/lcm.jar ]]; then
     done
     stop_modules
     expect_map "tcpq"
+    echo "== a server that hangs"
+    hang() {
+        start sensor "sim:office?frames=3000&width=320&height=240" --rate 30 --color raw --depth raw --lcm-url "tcpq://127.0.0.1:$port"
+        sleep 3
+        kill -STOP "$server"
+        sleep "$1"
+    }
+    hang 1.5
+    stop sensor 0  # while it waits for the server
+    kill -CONT "$server"
+    hang 6
+    [[ "$(said sensor "no connection (the server hangs")" -ge 1 ]] || fail "planemap-sensor did not say that the server hangs"
+    kill -CONT "$server"
+    sleep 2.5
+    [[ "$(said sensor "connected after")" -ge 1 ]] || fail "planemap-sensor did not find the server again"
+    stop sensor 0
     kill -KILL "$server"
     wait "$server" 2>/dev/null || true
     server=
@@ -134,6 +151,14 @@ unset "pid_of[sensor]"
 sleep 1
 expect_alive "the interface is up again"
 [[ "$(said map "connected after")" -eq 1 ]] || fail "planemap-map did not connect again"
+stop map 0
+start map --lcm-url "$url" --output "$work/out"
+start sensor "sim:office?frames=120" --rate 30 --lcm-url "$url"
+wait "${pid_of[sensor]}" || fail "planemap-sensor ended with code $?"
+unset "pid_of[sensor]"
+sleep 1
+[[ "$(said odometry "the sensor started again")" -ge 1 ]] || fail "planemap-odometry did not say that the sensor started again"
+[[ "$(said map "were never received: the map is incomplete")" -ge 1 ]] || fail "planemap-map did not say what it lacks"
 stop_modules
 expect_map "udpm"
 

@@ -90,11 +90,13 @@ TEST_F(ProgramsTest, ADumpedConfigGivesTheSameRun) {
     b["options"]["output"] = a["options"]["output"];
     EXPECT_EQ(a.at("options"), b.at("options"));
     for (const char* key : {"plane_map_zstd", "plane_map_working", "octomap_bt_memory", "octomap_bt_occupied",
-                            "octomap_bt_zstd", "octomap_working"})
+                            "octomap_bt_zstd", "octomap_bt_occupied_zstd", "octomap_working"})
         EXPECT_GT(a.at("sizes_bytes").at(key).get<std::int64_t>(), 0) << key;
     EXPECT_LT(a.at("sizes_bytes").at("octomap_bt_occupied"), a.at("sizes_bytes").at("octomap_bt"));
     EXPECT_LE(a.at("sizes_bytes").at("octomap_bt_memory"), a.at("sizes_bytes").at("octomap_memory"));
     EXPECT_LT(a.at("sizes_bytes").at("octomap_bt_zstd"), a.at("sizes_bytes").at("octomap_bt"));
+    EXPECT_LT(a.at("sizes_bytes").at("octomap_bt_occupied_zstd"),
+              a.at("sizes_bytes").at("octomap_bt_occupied"));
     EXPECT_GT(a.at("sizes_bytes").at("plane_map_working"), a.at("sizes_bytes").at("plane_map_memory"));
 }
 

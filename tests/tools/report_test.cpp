@@ -56,6 +56,7 @@ TEST(Report, SaysWhatIsComparedWithWhat) {
     report["sizes_bytes"]["octomap_bt_zstd"] = 9000;
     report["sizes_bytes"]["octomap_bt_memory"] = 600000;
     report["sizes_bytes"]["octomap_bt_occupied"] = 7000;
+    report["sizes_bytes"]["octomap_bt_occupied_zstd"] = 4500;
     report["octomap"]["resolution_m"] = 0.035;
     const std::string text = report_markdown(report);
     for (const char* line :
@@ -63,9 +64,11 @@ TEST(Report, SaysWhatIsComparedWithWhat) {
           "| plane map, to go on mapping: with keyframes' regions and rasters, in memory | 800.0 kB | 400 |",
           "| OctoMap 3.5 cm, .bt file, zstd | 9.0 kB | 4.50 |",
           "| OctoMap 3.5 cm, .bt file of the occupied space alone | 7.0 kB | 3.50 |",
+          "| OctoMap 3.5 cm, .bt file of the occupied space alone, zstd | 4.5 kB | 2.25 |",
           "| OctoMap 3.5 cm, .bt file loaded, in memory | 600.0 kB | 300 |",
           "| OctoMap 3.5 cm, to go on mapping: tree and keyframes' depth, in memory | 4.0 MB | 2000 |",
-          "9.50 times as a file, 6.00 times as a file compressed by zstd, 120 times loaded in memory, 5.00 "
+          "9.50 times as a file, 6.00 times as a file compressed by zstd, 3.00 times as such a file of the "
+          "occupied space alone, 120 times loaded in memory, 5.00 "
           "times to go on "
           "mapping",
           "with depth or without"})

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
 
 namespace planemap {
 
@@ -12,8 +13,11 @@ class Pipeline;
 /// Modules that lost nothing are left out.
 nlohmann::ordered_json losses_of(Pipeline& pipeline);
 
-/// The same in lines for report.md, a reason a line with its modules; empty when there are none, or when the
-/// report is from before they were told. Throws nlohmann::json::exception for a report that is none.
+/// What the modules remarked (ModuleStatus::remark()), each once.
+std::vector<std::string> remarks_of(Pipeline& pipeline);
+
+/// What was lost in lines for report.md, a reason a line with its modules; empty when there are none, or when
+/// the report is from before they were told. Throws nlohmann::json::exception for a report that is none.
 std::string losses_markdown(const nlohmann::ordered_json& report);
 
 }  // namespace planemap

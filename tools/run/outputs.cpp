@@ -111,8 +111,10 @@ Json report_of(const std::string& input_name, const Input& input, Pipeline& pipe
     report["complaints"] = complaints;
     add_sizes(pipeline, input.frames(), report);
     add_accuracy(input, pipeline, report);
-    report["warnings"] =
+    std::vector<std::string> warnings =
         warnings_of(estimates, pipeline.given_poses() != nullptr, pipeline.reason_lost(), report);
+    for (const std::string& remark : remarks_of(pipeline)) warnings.push_back(remark);
+    report["warnings"] = warnings;
     report.update(about);
     return report;
 }

@@ -42,6 +42,7 @@ void add_octomap(const OctomapBuilder& builder, const PlaneMap& map, Json& sizes
     sizes["octomap_bt_memory"] = s.bt_loaded_memory_bytes;
     sizes["octomap_bt_occupied"] = s.bt_occupied_bytes;
     sizes["octomap_bt_zstd"] = zstd_bytes(builder.bt());
+    sizes["octomap_bt_occupied_zstd"] = zstd_bytes(builder.bt_occupied());
     sizes["octomap_working"] = builder.working_bytes();
     const double resolution = builder.tree().getResolution();
     report["octomap"] = {{"resolution_m", resolution},
@@ -99,18 +100,21 @@ std::vector<Row> rows_of(const Json& report) {
     if (has_octomap(report)) {
         const std::string octomap =
             "OctoMap " + format("%.4g cm", 100 * report.at("octomap").at("resolution_m").get<double>());
-        rows.insert(rows.end(), {{"octomap_bt", octomap + ", .bt file"},
-                                 {"octomap_bt_zstd", octomap + ", .bt file, zstd"},
-                                 {"octomap_bt_occupied", octomap + ", .bt file of the occupied space alone"},
-                                 {"octomap_bt_memory", octomap + ", .bt file loaded, in memory"},
-                                 {"octomap_ot", octomap + ", .ot file"},
-                                 {"octomap_memory", octomap + ", its working tree, in memory"},
-                                 {"octomap_working",
-                                  octomap + ", to go on mapping: tree and keyframes' depth, in memory"},
-                                 {"octomap_occupied_leaves", octomap + ", occupied leaf centres at 12 B"},
-                                 {"voxel_cloud_1cm", "cloud of 1 cm voxels of the keyframes at 12 B"}});
+        rows.insert(
+            rows.end(),
+            {{"octomap_bt", octomap + ", .bt file"},
+             {"octomap_bt_zstd", octomap + ", .bt file, zstd"},
+             {"octomap_bt_occupied", octomap + ", .bt file of the occupied space alone"},
+             {"octomap_bt_occupied_zstd", octomap + ", .bt file of the occupied space alone, zstd"},
+             {"octomap_bt_memory", octomap + ", .bt file loaded, in memory"},
+             {"octomap_ot", octomap + ", .ot file"},
+             {"octomap_memory", octomap + ", its working tree, in memory"},
+             {"octomap_working", octomap + ", to go on mapping: tree and keyframes' depth, in memory"},
+             {"octomap_occupied_leaves", octomap + ", occupied leaf centres at 12 B"},
+             {"voxel_cloud_1cm", "cloud of 1 cm voxels of the keyframes at 12 B"}});
     }
-    rows.push_back({"raw_cloud", "raw clouds of all frames at 12 B a pixel, with depth or without"});
+    rows.insert(rows.end(),
+                {{"raw_cloud", "raw clouds of all frames at 12 B a pixel, with depth or without"}});
     return rows;
 }
 
@@ -120,6 +124,7 @@ std::string like_with_like(const Json& sizes) {
         const char *octomap, *planes, *what;
     } pairs[] = {{"octomap_bt", "plane_map_message", "as a file"},
                  {"octomap_bt_zstd", "plane_map_zstd", "as a file compressed by zstd"},
+                 {"octomap_bt_occupied_zstd", "plane_map_zstd", "as such a file of the occupied space alone"},
                  {"octomap_bt_memory", "plane_map_memory", "loaded in memory"},
                  {"octomap_working", "plane_map_working", "to go on mapping"}};
     std::string text;
@@ -168,7 +173,8 @@ void add_sizes(Pipeline& pipeline, std::int64_t frames, Json& report) {
     sizes["voxel_cloud_1cm"] = nullptr;
     sizes["plane_map_zstd"] = zstd_bytes(bytes);
     sizes["plane_map_working"] = mapper.working_bytes() + mapper.memory_bytes();
-    for (const char* key : {"octomap_bt_memory", "octomap_bt_occupied", "octomap_bt_zstd", "octomap_working"})
+    for (const char* key : {"octomap_bt_memory", "octomap_bt_occupied", "octomap_bt_zstd",
+                            "octomap_bt_occupied_zstd", "octomap_working"})
         sizes[key] = nullptr;
     report["octomap"] = {{"resolution_m", nullptr}, {"nodes", nullptr}};
     report["coverage"] = {{"leaves_explained", nullptr}, {"area_supported", nullptr}};
