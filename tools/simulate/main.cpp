@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "core/standard_output.hpp"
 #include "messages/process.hpp"
 #include "results/result_folder.hpp"
-#include "results/standard_output.hpp"
 #include "sensor/sensor_shell.hpp"
 #include "sensor/simulator/simulated_source.hpp"
 #include "simulate/recording.hpp"
