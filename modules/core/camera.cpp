@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/camera.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <string>
@@ -11,23 +12,75 @@ namespace planemap {
 
 namespace {
 
+std::string number_text(double value) {
+    std::ostringstream text;
+    text << value;
+    return text.str();
+}
+
+std::string range_text(double low, double high, const char* unit) {
+    return number_text(low) + " to " + number_text(high) + unit;
+}
+
 void check(const PinholeCamera& camera, const std::string& name, FieldErrors& errors) {
+    using Limits = CameraLimits;
     constexpr int kMaxSide = 8192;
-    const auto size = [&](int value, const char* field) {
-        errors.require(value >= 1 && value <= kMaxSide, name + field, value, "1 to 8192");
+    const auto within = [&](double value, double low, double high, const char* field, const char* unit) {
+        errors.require(value >= low && value <= high, name + field, value, range_text(low, high, unit));
     };
-    const auto focal = [&](double value, const char* field) {
-        errors.require(std::isfinite(value) && value > 0, name + field, value, "finite and greater than 0");
-    };
-    const auto centre = [&](double value, const char* field) {
-        errors.require(std::isfinite(value), name + field, value, "finite");
-    };
-    size(camera.width, ".width");
-    size(camera.height, ".height");
-    focal(camera.fx, ".fx");
-    focal(camera.fy, ".fy");
-    centre(camera.cx, ".cx");
-    centre(camera.cy, ".cy");
+    within(camera.width, 1, kMaxSide, ".width", "");
+    within(camera.height, 1, kMaxSide, ".height", "");
+    const double width = std::clamp(camera.width, 1, kMaxSide),
+                 height = std::clamp(camera.height, 1, kMaxSide);
+    const double longer = std::max(width, height);
+    const double least = Limits::kLeastFocal * longer, most = Limits::kMostFocal * longer;
+    within(camera.fx, least, most, ".fx", " pixels");
+    within(camera.fy, least, most, ".fy", " pixels");
+    within(camera.cx, -Limits::kOutside * width, (1 + Limits::kOutside) * width, ".cx", " pixels");
+    within(camera.cy, -Limits::kOutside * height, (1 + Limits::kOutside) * height, ".cy", " pixels");
+    const double aspect = camera.fx / camera.fy;
+    if (!(camera.fx > 0 && camera.fy > 0 && std::isfinite(aspect))) return;
+    errors.require(
+        aspect >= Limits::kLeastAspect && aspect <= Limits::kMostAspect, name + ".fx / " + name + ".fy",
+        number_text(aspect) + " (" + number_text(camera.fx) + " / " + number_text(camera.fy) + " pixels)",
+        range_text(Limits::kLeastAspect, Limits::kMostAspect, ""));
+}
+
+/// The depth range, and that 16 bits reach into it.
+void check_depth(const CameraInfo& camera, FieldErrors& errors) {
+    using Limits = CameraLimits;
+    const double units = camera.depth_units_per_metre;
+    const bool units_good = units >= Limits::kLeastUnits && units <= Limits::kMostUnits;
+    errors.require(units_good, "depth_units_per_metre", units,
+                   range_text(Limits::kLeastUnits, Limits::kMostUnits, ""));
+    errors.require(camera.depth_min_m >= 0, "depth_min_m", camera.depth_min_m, "at least 0");
+    errors.require(std::isfinite(camera.depth_max_m) && camera.depth_max_m > camera.depth_min_m,
+                   "depth_max_m", camera.depth_max_m, "finite and greater than depth_min_m");
+    const double farthest = 65535 / units;
+    if (units_good && camera.depth_min_m >= 0 && std::isfinite(camera.depth_min_m)) {
+        errors.require(farthest > camera.depth_min_m, "depth_units_per_metre", units,
+                       "such that 16 bits reach beyond depth_min_m, " + number_text(camera.depth_min_m) +
+                           " m: they end at " + number_text(farthest) + " m");
+    }
+}
+
+void check_noise(const CameraInfo& camera, FieldErrors& errors) {
+    const DepthNoise& noise = camera.noise;
+    const bool good[] = {std::isfinite(noise.base_m) && noise.base_m >= 0,
+                         std::isfinite(noise.quadratic_per_m) && noise.quadratic_per_m >= 0,
+                         std::isfinite(noise.offset_m)};
+    errors.require(good[0], "noise.base_m", noise.base_m, "at least 0");
+    errors.require(good[1], "noise.quadratic_per_m", noise.quadratic_per_m, "at least 0");
+    errors.require(good[2], "noise.offset_m", noise.offset_m, "finite");
+    const double nearest = camera.depth_min_m, farthest = camera.depth_max_m;
+    if (!(good[0] && good[1] && good[2] && nearest < farthest && std::isfinite(farthest))) return;
+    const double quietest = std::clamp(noise.offset_m, nearest, farthest);
+    errors.require(noise.sigma(quietest) >= CameraLimits::kLeastSigma_m,
+                   "noise at " + number_text(quietest) + " m", noise.sigma(quietest),
+                   "at least " + number_text(CameraLimits::kLeastSigma_m) + " m (base_m, quadratic_per_m)");
+    const double loudest = std::max(noise.sigma(nearest), noise.sigma(farthest));
+    errors.require(loudest <= farthest, "noise within the depth range", loudest,
+                   "at most its far end, " + number_text(farthest) + " m");
 }
 
 /// Registration is for images of comparable resolution: beyond, a pixel of one camera is a blot on the
@@ -54,16 +107,8 @@ void CameraInfo::validate() const {
     check_ratio(depth.fy, color.fy, "fy", errors);
     errors.require(is_valid(color_from_depth), "color_from_depth", "not a rigid transform",
                    "a rigid transform");
-    errors.require(std::isfinite(depth_units_per_metre) && depth_units_per_metre > 0, "depth_units_per_metre",
-                   depth_units_per_metre, "finite and greater than 0");
-    errors.require(depth_min_m >= 0, "depth_min_m", depth_min_m, "at least 0");
-    errors.require(std::isfinite(depth_max_m) && depth_max_m > depth_min_m, "depth_max_m", depth_max_m,
-                   "finite and greater than depth_min_m");
-    errors.require(std::isfinite(noise.base_m) && noise.base_m >= 0, "noise.base_m", noise.base_m,
-                   "at least 0");
-    errors.require(std::isfinite(noise.quadratic_per_m) && noise.quadratic_per_m >= 0,
-                   "noise.quadratic_per_m", noise.quadratic_per_m, "at least 0");
-    errors.require(std::isfinite(noise.offset_m), "noise.offset_m", noise.offset_m, "finite");
+    check_depth(*this, errors);
+    check_noise(*this, errors);
     errors.throw_if_any();
 }
 

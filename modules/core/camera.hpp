@@ -29,6 +29,17 @@ struct PinholeCamera {
     friend bool operator==(const PinholeCamera&, const PinholeCamera&) = default;
 };
 
+/// What the numbers of a real camera are within, from a fish's eye to a telescope. Beyond, one was mistyped
+/// or is of another image.
+struct CameraLimits {
+    static constexpr double kLeastFocal = 0.2, kMostFocal = 10;   ///< of the image's longer side
+    static constexpr double kLeastAspect = 0.5, kMostAspect = 2;  ///< fx / fy
+    static constexpr double kOutside = 0.5;  ///< principal point: so many of its sides out of the image
+    static constexpr double kLeastUnits = 100, kMostUnits = 1e5;  ///< of depth a metre: 1 cm to 0.01 mm
+    static constexpr double kLeastSigma_m = 1e-6;  ///< of depth's noise; without any, no reading
+                                                   ///< would agree with another
+};
+
 /// Noise of the depth sensor: standard deviation of depth at z metres, base + quadratic (z - offset)^2,
 /// metres. The default is the Kinect's (Nguyen et al. 2012).
 struct DepthNoise {
@@ -53,8 +64,9 @@ struct CameraInfo {
     DepthNoise noise;
 
     double metres(std::uint16_t raw) const { return raw / depth_units_per_metre; }
-    /// Throws std::invalid_argument that names every bad field (sizes 1 to 8192, focal lengths finite and > 0
-    /// and the depth camera's 0.3 to 4 times the colour camera's, ...).
+    /// Throws std::invalid_argument that names every bad field (sizes 1 to 8192, what CameraLimits says, the
+    /// depth camera's focal lengths 0.3 to 4 times the colour camera's, a depth range that 16 bits reach,
+    /// ...).
     void validate() const;
 };
 

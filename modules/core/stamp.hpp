@@ -10,6 +10,10 @@
 
 namespace planemap {
 
+/// Stamps are within this, either way: 36,000 years of microseconds. The difference of two does not overflow,
+/// with any pause added.
+constexpr std::int64_t kFarthestUtime = std::int64_t{1} << 60;
+
 enum class StampUnit { kSeconds, kMilliseconds, kMicroseconds, kNanoseconds };
 
 /// "12.345 s".

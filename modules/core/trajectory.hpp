@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/pose.hpp"
@@ -14,8 +15,9 @@ using Trajectory = std::vector<StampedPose>;
 
 /// Reads a trajectory with timestamps, world_from_camera in metres, in TUM's form or another that
 /// read_trajectory_file() knows. Throws std::runtime_error naming file, line and reason; also for KITTI's
-/// form, which has no timestamps. The result is sorted by time.
-Trajectory read_trajectory(const std::filesystem::path& file);
+/// form, which has no timestamps. The result is sorted by time; what the user should know of the file is
+/// added to the notes, a line each.
+Trajectory read_trajectory(const std::filesystem::path& file, std::vector<std::string>* notes = nullptr);
 
 /// Writes a TUM trajectory (timestamps with six decimals, values with seven, beside and renamed, so a reader
 /// never sees half a file). Throws std::runtime_error naming the file.

@@ -5,6 +5,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <optional>
 #include <sstream>
@@ -22,6 +23,8 @@ namespace {
 
 constexpr std::size_t kTumColumns = 8, kKittiColumns = 12, kEurocColumns = 17;
 constexpr std::int64_t kIndexStepUs = 1000000;  // between poses that have no timestamps
+constexpr double kFarthest_m = 1e8;             // beyond any place on Earth, in any map's coordinates
+constexpr double kLengthTolerance = 0.01;       // of a unit quaternion that was written with two digits
 
 /// Where a line holds what.
 struct Columns {
@@ -145,6 +148,16 @@ double number(std::string_view text) {
     return error == std::errc() ? value : std::numeric_limits<double>::infinity();  // out of range
 }
 
+std::string number_text(double value) {
+    char text[32];
+    std::snprintf(text, sizeof(text), "%.6g", value);
+    return text;
+}
+
+std::string count_text(std::size_t count, const char* one, const char* more) {
+    return std::to_string(count) + " " + (count == 1 ? one : more);
+}
+
 class Reader {
   public:
     explicit Reader(const std::filesystem::path& file) : file_(file) {}
@@ -157,6 +170,7 @@ class Reader {
         }
         std::stable_sort(result_.poses.begin(), result_.poses.end(),
                          [](const auto& a, const auto& b) { return a.utime < b.utime; });
+        note_repeated_stamps();
         return std::move(result_);
     }
 
@@ -246,6 +260,7 @@ class Reader {
             fail("the first 3 x 3 numbers of the 3 x 4 matrix are no rotation");
         }
         const auto index = static_cast<std::int64_t>(result_.poses.size());
+        check_position({v[3], v[7], v[11]});
         result_.poses.push_back(
             {index * kIndexStepUs, make_pose({v[3], v[7], v[11]}, Eigen::Quaterniond(rotation))});
     }
@@ -253,9 +268,41 @@ class Reader {
     void take_stamped(const std::vector<double>& v, const std::vector<std::string_view>& text) {
         const auto& [x, y, z, w] = order_.quaternion;
         const Eigen::Quaterniond q(v[w], v[x], v[y], v[z]);
-        if (!(q.norm() > 1e-3 && q.norm() < 1e3)) fail("the quaternion is not of unit length");
+        if (!(std::abs(q.norm() - 1) <= kLengthTolerance)) {
+            fail("the quaternion is not of unit length: qx qy qz qw are " + number_text(q.norm()) +
+                 " long, must be " + number_text(1 - kLengthTolerance) + " to " +
+                 number_text(1 + kLengthTolerance));
+        }
         const auto& [px, py, pz] = order_.position;
+        check_position({v[px], v[py], v[pz]});
         result_.poses.push_back({utime_of(text[order_.timestamp]), make_pose({v[px], v[py], v[pz]}, q)});
+    }
+
+    void check_position(const Eigen::Vector3d& position) const {
+        constexpr const char* kNames[] = {"tx", "ty", "tz"};
+        for (int i = 0; i < 3; ++i) {
+            if (std::abs(position[i]) <= kFarthest_m) continue;
+            fail(std::string(kNames[i]) + " is " + number_text(position[i]) + " m, must be " +
+                 number_text(-kFarthest_m) + " to " + number_text(kFarthest_m) + " m");
+        }
+    }
+
+    /// Sorted poses that share their stamp with the one before.
+    void note_repeated_stamps() {
+        std::size_t same = 0, other = 0;
+        for (std::size_t i = 1; i < result_.poses.size(); ++i) {
+            const StampedPose &before = result_.poses[i - 1], &pose = result_.poses[i];
+            if (before.utime != pose.utime) continue;
+            ++(before.world_from_camera.matrix() == pose.world_from_camera.matrix() ? same : other);
+        }
+        if (same + other == 0) return;
+        std::string what;
+        if (same > 0) what = count_text(same, "pose stands", "poses stand") + " there twice";
+        if (other > 0) {
+            what += (same > 0 ? ", " : "") + count_text(other, "pose says", "poses say") +
+                    " something else than another of the same stamp, of which the last is taken";
+        }
+        result_.notes.push_back(file_.string() + ": " + what);
     }
 
     std::int64_t utime_of(std::string_view text) {
@@ -294,14 +341,31 @@ TrajectoryFile read_trajectory_file(const std::filesystem::path& file) {
     return Reader(file).read();
 }
 
-Trajectory read_trajectory(const std::filesystem::path& file) {
+Trajectory read_trajectory(const std::filesystem::path& file, std::vector<std::string>* notes) {
     TrajectoryFile read = read_trajectory_file(file);
     if (read.format == TrajectoryFormat::kKitti) {
         throw std::runtime_error(file.string() +
                                  ": 12 numbers a line are KITTI's form, which has no timestamps; poses with "
                                  "timestamps are needed: TUM's or EuRoC's form");
     }
+    if (notes != nullptr) notes->insert(notes->end(), read.notes.begin(), read.notes.end());
     return std::move(read.poses);
+}
+
+void require_poses(const std::filesystem::path& file, const Trajectory& trajectory) {
+    if (trajectory.empty()) throw std::runtime_error(file.string() + ": holds no poses");
+}
+
+std::string span_text(const Trajectory& trajectory) {
+    if (trajectory.empty()) return "nothing";
+    return span_text(trajectory.front().utime, trajectory.back().utime);
+}
+
+std::string span_text(std::int64_t first_utime, std::int64_t last_utime) {
+    char text[80];
+    std::snprintf(text, sizeof(text), "%.3f to %.3f s", static_cast<double>(first_utime) * 1e-6,
+                  static_cast<double>(last_utime) * 1e-6);
+    return text;
 }
 
 }  // namespace planemap

@@ -44,7 +44,7 @@ class Bus {
     /// The URL after completion.
     const std::string& url() const { return endpoint_.url(); }
     /// True for memq://, where nothing may be dropped.
-    bool in_process() const { return url().rfind("memq://", 0) == 0; }
+    bool in_process() const { return endpoint_.in_process(); }
 
     /// Sends a message. One that cannot be sent (no connection, too large) is counted in unsent().
     template <typename T>

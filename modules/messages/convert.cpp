@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/stamp.hpp"
 #include "messages/image_codec.hpp"
 
 namespace planemap {
@@ -159,6 +160,12 @@ Matrix6d covariance_from(const double* in, const char* field) {
 
 }  // namespace
 
+std::int64_t checked_utime(std::int64_t utime, const char* field) {
+    if (utime < -kFarthestUtime || utime > kFarthestUtime)
+        fail(field, "is " + std::to_string(utime) + " us, beyond 2^60");
+    return utime;
+}
+
 camera_info_t to_message(const CameraInfo& camera, std::int64_t utime, std::int32_t seq) {
     camera_info_t message;
     message.utime = utime;
@@ -178,6 +185,7 @@ camera_info_t to_message(const CameraInfo& camera, std::int64_t utime, std::int3
 }
 
 CameraInfo from_message(const camera_info_t& message) {
+    checked_utime(message.utime, "camera_info.utime");
     CameraInfo camera;
     camera.serial = message.serial;
     camera.depth = from_message(message.depth);
@@ -206,7 +214,7 @@ planar_regions_t to_message(const FrameRegions& regions, std::int32_t seq) {
 }
 
 FrameRegions from_message(const planar_regions_t& message) {
-    return {message.utime, from_messages(message.regions)};
+    return {checked_utime(message.utime, "planar_regions.utime"), from_messages(message.regions)};
 }
 
 odometry_t to_message(const OdometryEstimate& estimate, std::int32_t seq) {
@@ -227,8 +235,8 @@ odometry_t to_message(const OdometryEstimate& estimate, std::int32_t seq) {
 
 OdometryEstimate from_message(const odometry_t& message) {
     OdometryEstimate estimate;
-    estimate.utime = message.utime;
-    estimate.pose_utime = message.pose_utime;
+    estimate.utime = checked_utime(message.utime, "odometry.utime");
+    estimate.pose_utime = checked_utime(message.pose_utime, "odometry.pose_utime");
     require(message.status >= 0 && message.status <= 2, "odometry.status", "is unknown");
     estimate.status = static_cast<TrackingStatus>(message.status);
     estimate.odom_from_camera = from_message(message.odom_from_camera, "odometry.odom_from_camera");
@@ -277,8 +285,8 @@ keyframe_t to_message(const Keyframe& keyframe, std::int32_t seq) {
 
 Keyframe from_message(const keyframe_t& message) {
     Keyframe keyframe;
-    keyframe.utime = message.utime;
-    keyframe.pose_utime = message.pose_utime;
+    keyframe.utime = checked_utime(message.utime, "keyframe.utime");
+    keyframe.pose_utime = checked_utime(message.pose_utime, "keyframe.pose_utime");
     keyframe.id = message.id;
     require(message.id >= 0, "keyframe.id", "is negative");
     require(message.previous_id >= -1 && message.previous_id < message.id, "keyframe.previous_id",
@@ -326,7 +334,7 @@ trajectory_t to_message(const KeyframeTrajectory& trajectory, std::int32_t seq) 
 
 KeyframeTrajectory from_message(const trajectory_t& message) {
     KeyframeTrajectory trajectory;
-    trajectory.utime = message.utime;
+    trajectory.utime = checked_utime(message.utime, "trajectory.utime");
     trajectory.revision = message.revision;
     trajectory.loop_closures = message.n_loop_closures;
     trajectory.world_from_odom = from_message(message.world_from_odom, "trajectory.world_from_odom");
@@ -335,7 +343,7 @@ KeyframeTrajectory from_message(const trajectory_t& message) {
         require(message.ids[i] >= 0 && (i == 0 || message.ids[i] > message.ids[i - 1]), "trajectory.ids",
                 "do not ascend");
         trajectory.keyframes.push_back(
-            {message.ids[i], message.utimes[i],
+            {message.ids[i], checked_utime(message.utimes[i], "trajectory.utimes"),
              from_message(message.world_from_camera[i], "trajectory.world_from_camera")});
     }
     return trajectory;
@@ -478,7 +486,7 @@ plane_map_t to_message(const PlaneMap& map, std::int32_t seq) {
 
 PlaneMap from_message(const plane_map_t& message) {
     PlaneMap map;
-    map.utime = message.utime;
+    map.utime = checked_utime(message.utime, "plane_map.utime");
     map.revision = message.revision;
     map.up = Eigen::Vector3f(message.up);
     require(map.up.allFinite() && (map.up.isZero() || std::abs(map.up.norm() - 1) < 1e-3f), "up",

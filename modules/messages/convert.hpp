@@ -23,6 +23,9 @@
 
 namespace planemap {
 
+/// The stamp of a message; throws MessageError naming the field if it is beyond kFarthestUtime.
+std::int64_t checked_utime(std::int64_t utime, const char* field);
+
 camera_info_t to_message(const CameraInfo& camera, std::int64_t utime, std::int32_t seq);
 CameraInfo from_message(const camera_info_t& message);
 

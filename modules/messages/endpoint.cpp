@@ -7,6 +7,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <charconv>
@@ -16,6 +17,7 @@
 #include <mutex>
 #include <stdexcept>
 #include <thread>
+#include <vector>
 
 #include "messages/file_bytes.hpp"
 
@@ -39,6 +41,13 @@ long number_in(const std::string& url, const char* what, const std::string& text
                            " to " + std::to_string(last));
     }
     return value;
+}
+
+/// The parameters that liblcm knows; it takes others without a word.
+std::vector<std::string> known_parameters(const std::string& provider) {
+    if (provider == "udpm" || provider == "mpudpm") return {"recv_buf_size", "ttl"};
+    if (provider == "file") return {"mode", "speed", "start_timestamp"};
+    return {};
 }
 
 /// The value of a parameter KEY=VALUE of a URL; empty if it is not there.
@@ -146,6 +155,7 @@ Endpoint::Endpoint(const std::string& url) : url_(url) {
     const std::size_t question = std::min(rest.find('?'), rest.size());
     host_ = rest.substr(0, question);
     parameters_ = rest.substr(std::min(question + 1, rest.size()));
+    check_parameters();
     if (is_log()) check_log();
     if (!is_network()) return;
     const std::size_t port = host_.find(':');
@@ -161,6 +171,26 @@ Endpoint::Endpoint(const std::string& url) : url_(url) {
     } else if (host_.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789.-_") !=
                std::string::npos) {
         malformed(url, "'" + host_ + "' is neither a name nor an IPv4 address");
+    }
+}
+
+void Endpoint::check_parameters() const {
+    const std::vector<std::string> known = known_parameters(provider_);
+    std::vector<std::string> seen;
+    for (std::size_t at = 0; at < parameters_.size();) {
+        const std::size_t end = std::min(parameters_.find_first_of("&,", at), parameters_.size());
+        const std::string parameter = parameters_.substr(at, end - at);
+        const std::string key = parameter.substr(0, parameter.find('='));
+        at = end + 1;
+        if (std::find(known.begin(), known.end(), key) == known.end()) {
+            std::string names;
+            for (const std::string& name : known) names += (names.empty() ? "" : ", ") + name;
+            malformed(url_, "'" + key + "' is not an option of " + provider_ +
+                                (names.empty() ? ", which has none" : "; they are " + names));
+        }
+        if (parameter.size() <= key.size() + 1) malformed(url_, key + " has no value");
+        if (std::find(seen.begin(), seen.end(), key) != seen.end()) malformed(url_, key + " is given twice");
+        seen.push_back(key);
     }
 }
 

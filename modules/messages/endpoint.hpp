@@ -15,7 +15,7 @@ namespace planemap {
 class Endpoint {
   public:
     /// Throws std::runtime_error that names the URL and what is wrong with it if no network can ever make it
-    /// good: an unknown provider, an address or port that is none, a log that cannot be read.
+    /// good: an unknown provider or option, an address or port that is none, a log that cannot be read.
     explicit Endpoint(const std::string& url);
     ~Endpoint();
 
@@ -23,6 +23,8 @@ class Endpoint {
     bool is_network() const { return provider_ == "udpm" || provider_ == "mpudpm" || provider_ == "tcpq"; }
     bool is_multicast() const { return provider_ == "udpm" || provider_ == "mpudpm"; }
     bool is_log() const { return provider_ == "file"; }
+    /// True for memq://, on which a process hears nobody but itself.
+    bool in_process() const { return provider_ == "memq"; }
 
     /// Empty if it can be reached now, else the reason. Takes a second at most, and ends early on a signal.
     std::string unreachable();
@@ -31,6 +33,7 @@ class Endpoint {
 
   private:
     struct Lookup;
+    void check_parameters() const;
     void check_multicast() const;
     void check_log() const;
     std::string resolve();

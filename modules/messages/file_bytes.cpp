@@ -99,4 +99,18 @@ std::uint64_t FileBytes::find(const std::array<std::uint8_t, 4>& word, std::uint
     return to;
 }
 
+std::uint64_t FileBytes::zeros_from(std::uint64_t from) {
+    std::vector<std::uint8_t> bytes(kWindow);
+    for (std::uint64_t end = size_; end > from;) {
+        const std::uint64_t begin = end - std::min<std::uint64_t>(end - from, kWindow);
+        const auto part = std::span(bytes).first(static_cast<std::size_t>(end - begin));
+        peek(begin, part);
+        const auto last =
+            std::find_if(part.rbegin(), part.rend(), [](std::uint8_t byte) { return byte != 0; });
+        if (last != part.rend()) return end - static_cast<std::uint64_t>(last - part.rbegin());
+        end = begin;
+    }
+    return from;
+}
+
 }  // namespace planemap

@@ -30,6 +30,8 @@ class FileBytes {
     void peek(std::uint64_t at, std::span<std::uint8_t> out);
     /// Where four bytes stand first in [from, to); `to` if they do not. They may reach beyond `to`.
     std::uint64_t find(const std::array<std::uint8_t, 4>& word, std::uint64_t from, std::uint64_t to);
+    /// The place in [from, size()] from which on there is nothing but zeros.
+    std::uint64_t zeros_from(std::uint64_t from);
 
   private:
     static constexpr std::size_t kWindow = 65536;

@@ -5,10 +5,15 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
+#include <limits>
+#include <map>
+#include <sstream>
 #include <type_traits>
 
 #include "core/nearest_name.hpp"
+#include "core/standard_output.hpp"
 #include "core/version.hpp"
 
 namespace planemap {
@@ -30,11 +35,62 @@ std::vector<std::string> long_names(const CLI::App& app) {
     return names;
 }
 
+/// What is wrong with an option's text; empty if nothing. May write it in the one way that CLI11 reads right.
+using Check = std::function<std::string(std::string&)>;
+using Checks = std::map<const CLI::Option*, Check>;
+
+/// CLI11's own reading takes 010 for 8, -1 for the largest number there is, and nan for a number.
+template <typename T>
+std::string check_number(std::string& text) {
+    const char* begin = text.data() + (text.starts_with('+') ? 1 : 0);
+    const char* end = text.data() + text.size();
+    T value{};
+    const auto [stop, error] = std::from_chars(begin, end, value);
+    bool good = error == std::errc() && stop == end;
+    if constexpr (std::is_floating_point_v<T>) {
+        if (good && std::isfinite(value)) return "";
+        return "\"" + text + "\" is no finite number";
+    } else {
+        if (!good) {
+            return "\"" + text + "\" is no whole number from " +
+                   std::to_string(std::numeric_limits<T>::min()) + " to " +
+                   std::to_string(std::numeric_limits<T>::max());
+        }
+        text = std::to_string(value);
+        return "";
+    }
+}
+
+std::string check_text(std::string& text) {
+    return text.empty() ? "must not be empty" : "";
+}
+
+/// By the field that an option writes to.
+Check check_of(double& /*field*/) {
+    return check_number<double>;
+}
+Check check_of(int& /*field*/) {
+    return check_number<int>;
+}
+Check check_of(std::uint64_t& /*field*/) {
+    return check_number<std::uint64_t>;
+}
+Check check_of(std::string& /*field*/) {
+    return check_text;
+}
+Check check_of(std::filesystem::path& /*field*/) {
+    return check_text;
+}
+template <typename T>
+Check check_of(std::optional<T>& /*field*/) {
+    return check_number<T>;
+}
+
 /// The file of --config. CLI11's own reader drops what follows a # inside quotes, takes the first of two
 /// values without a word, and names no line.
 class ConfigFile : public CLI::ConfigBase {
   public:
-    explicit ConfigFile(const CLI::App& app) : app_(app) {}
+    ConfigFile(const CLI::App& app, const Checks& checks) : app_(app), checks_(checks) {}
 
     std::vector<CLI::ConfigItem> from_config(std::istream& input) const override {
         std::vector<CLI::ConfigItem> items;
@@ -58,6 +114,7 @@ class ConfigFile : public CLI::ConfigBase {
                 fail(item.name + " is given twice");
             std::string value = equals == std::string::npos ? "true" : line.substr(equals + 1);
             if (!take_value(value)) fail("the value of " + item.name + " has no end: a \" is missing");
+            if (const std::string why = complaint(*option, value); !why.empty()) fail(item.name + ": " + why);
             item.inputs = {value};
             items.push_back(item);
         }
@@ -91,7 +148,20 @@ class ConfigFile : public CLI::ConfigBase {
         return false;
     }
 
+    /// What is wrong with a value. CLI11 looks at values when it no longer knows where they stood.
+    std::string complaint(const CLI::Option& option, std::string value) const {
+        if (const auto check = checks_.find(&option); check != checks_.end()) return check->second(value);
+        if (option.get_items_expected_max() > 0) return "";
+        try {
+            CLI::detail::to_flag_value(value);
+            return "";
+        } catch (const std::invalid_argument&) {
+            return "\"" + value + "\" is neither true nor false";
+        }
+    }
+
     const CLI::App& app_;
+    const Checks& checks_;
 };
 
 /// As ConfigFile reads it.
@@ -146,7 +216,7 @@ class Flags::Impl {
   public:
     Impl(const std::string& program, const std::string& description) : app(description, program) {
         app.set_config("--config", "", "Read options from a file: one `name = value` a line, # is a comment");
-        app.config_formatter(std::make_shared<ConfigFile>(app));
+        app.config_formatter(std::make_shared<ConfigFile>(app, checks));
         app.allow_config_extras(CLI::config_extras_mode::error);
         app.set_version_flag("--version", program + " " + version(), "Print the version and exit");
         app.add_flag("--dump-config", dump, "Print all options as a file for --config, and exit")
@@ -161,9 +231,14 @@ class Flags::Impl {
     }
     template <typename T>
     CLI::Option* option(const std::string& name, T& field, const std::string& description) {
-        CLI::Option* const added = app.add_option(dashed(name), field, description);
-        finish(added, field);
-        return added;
+        return checked(app.add_option(dashed(name), field, description), field, check_of(field));
+    }
+    template <typename T>
+    CLI::Option* checked(CLI::Option* option, T& field, const Check& check) {
+        option->transform(CLI::Validator(check, ""));
+        checks[option] = check;
+        finish(option, field);
+        return option;
     }
     template <typename T>
     void finish(CLI::Option* option, const T& field) {
@@ -220,11 +295,23 @@ class Flags::Impl {
         return text;
     }
 
+    /// Prints what the user asked for; the program's exit code.
+    int say(const std::string& text) const {
+        try {
+            print(text);
+            return 0;
+        } catch (const std::runtime_error& error) {
+            std::fprintf(stderr, "%s: %s\n", app.get_name().c_str(), error.what());
+            return 1;
+        }
+    }
+
     struct Known {
         CLI::Option* option;
         std::function<decltype(FlagValue::value)()> value;
     };
 
+    Checks checks;
     CLI::App app;
     std::string heading, prefix;
     CLI::Option* last = nullptr;
@@ -268,7 +355,10 @@ void Flags::add(const std::string& name, bool& field, const std::string& descrip
 }
 void Flags::add_choice(const std::string& name, std::string& field, const std::vector<std::string>& words,
                        const std::string& description) {
-    impl_->option(name, field, description)->capture_default_str()->check(CLI::IsMember(words));
+    CLI::Option* const option = impl_->option(name, field, description)->capture_default_str();
+    const CLI::Validator is_word = CLI::IsMember(words);
+    option->check(is_word);
+    impl_->checks[option] = [is_word](std::string& text) { return is_word(text); };
 }
 void Flags::required() {
     impl_->last->required();
@@ -278,7 +368,7 @@ void Flags::add_positional(const std::string& name, std::string& field, const st
     CLI::Option* const option = impl_->app.add_option(name, field, description)->required(required);
     // A list of arguments ("FILE...") is the program's own business: one line cannot hold it.
     if (name.ends_with("...")) option->configurable(false);
-    impl_->finish(option, field);
+    impl_->checked(option, field, check_of(field));
 }
 
 int Flags::parse(int argc, const char* const* argv) {
@@ -291,7 +381,9 @@ int Flags::parse(int argc, const char* const* argv) {
         if (const std::string word = impl_->single_dash(argc, argv); !word.empty()) return wrong(word);
         impl_->app.parse(argc, argv);
     } catch (const CLI::Success& success) {
-        return impl_->app.exit(success);
+        std::ostringstream text;
+        impl_->app.exit(success, text, text);
+        return impl_->say(text.str());
     } catch (const CLI::ConfigError& error) {
         return wrong(app.get_config_ptr()->as<std::string>() + ":" + error.what());
     } catch (const CLI::Error& error) {
@@ -302,8 +394,7 @@ int Flags::parse(int argc, const char* const* argv) {
         if (!(impl_->dump && about_all)) return wrong(error.what());
     }
     if (!impl_->dump) return -1;
-    std::fputs(impl_->config().c_str(), stdout);
-    return 0;
+    return impl_->say(impl_->config());
 }
 
 std::vector<FlagValue> Flags::values() const {

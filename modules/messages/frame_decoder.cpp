@@ -84,6 +84,13 @@ bool fits(const images_t& images, const CameraInfo& camera) {
            fits(find_image(images, [](std::int16_t type) { return type == images_t::LEFT; }), camera.color);
 }
 
+images_t decode_images(std::span<const std::uint8_t> bytes) {
+    images_t images = decode<images_t>(bytes);
+    checked_utime(images.utime, "frame.utime");
+    for (const image_t& image : images.images) checked_utime(image.utime, "frame.images.utime");
+    return images;
+}
+
 void require_size(const image_t& image, const PinholeCamera& camera, const char* which) {
     if (image.width == camera.width && image.height == camera.height) return;
     throw MessageError(std::string(which) + " image is " + size_text(image.width, image.height) +
@@ -342,12 +349,12 @@ Verdict FrameDecoder::judge(const images_t& images, std::uint32_t checksum) {
 
 std::shared_ptr<const Frame> FrameDecoder::decode(const RawMessage& message) const {
     if (!camera_) return nullptr;
-    return std::make_shared<const Frame>(planemap::decode<images_t>(message.bytes), camera_, decode_ms_);
+    return std::make_shared<const Frame>(decode_images(message.bytes), camera_, decode_ms_);
 }
 
 /// The frame, if it is the next one of the sender that is followed; else why not.
 std::pair<std::shared_ptr<const Frame>, Verdict> FrameDecoder::take(const RawMessage& message) {
-    images_t images = planemap::decode<images_t>(message.bytes);
+    images_t images = decode_images(message.bytes);
     const image_t* depth = find_image(images, is_depth);
     const std::uint32_t checksum = checksum_of(message.bytes);
     const bool is_other = other_camera_ && !fits(images, *camera_) && fits(images, *other_camera_);
@@ -367,6 +374,15 @@ std::pair<std::shared_ptr<const Frame>, Verdict> FrameDecoder::take(const RawMes
     return {std::move(frame), verdict};
 }
 
+/// Of the subscribers of one process, the first says it; all count it.
+void FrameDecoder::lose(const Subscriber& subscriber, const char* what) {
+    if (&subscriber == &subscribers_.front()) {
+        subscriber.status->lost(what);
+    } else {
+        subscriber.status->count_loss(what);
+    }
+}
+
 void FrameDecoder::on_frame(const RawMessage& message) {
     for (const Subscriber& subscriber : subscribers_) subscriber.status->came();
     if (!camera_) {
@@ -374,7 +390,7 @@ void FrameDecoder::on_frame(const RawMessage& message) {
             ModuleStatus& status = *subscriber.status;
             if (subscriber.main_stream) status.received();
             status.dropped();
-            status.lost("frames before their camera was described");
+            lose(subscriber, "frames before their camera was described");
             status.set_text(camera_refused_.empty()
                                 ? std::string("no ") + channels::kCameraInfo + " yet"
                                 : std::string(channels::kCameraInfo) + " cannot be used: " + camera_refused_);
@@ -388,7 +404,7 @@ void FrameDecoder::on_frame(const RawMessage& message) {
             if (subscriber.main_stream && verdict != Verdict::kForeign) status.received(frame->seq());
             if (verdict == Verdict::kTake) continue;
             if (subscriber.main_stream) status.dropped();
-            status.lost(loss(verdict));
+            lose(subscriber, loss(verdict));
         }
         if (verdict == Verdict::kTake) deliver(frame);
     } catch (const MessageError& error) {

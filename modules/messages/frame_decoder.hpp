@@ -101,6 +101,7 @@ class FrameDecoder {
     SenderGuard::Verdict judge(const bot_core::images_t& images, std::uint32_t checksum);
     void choose_camera(const bot_core::images_t& images);
     std::pair<std::shared_ptr<const Frame>, SenderGuard::Verdict> take(const RawMessage& message);
+    void lose(const Subscriber& subscriber, const char* what);
     void deliver(const std::shared_ptr<const Frame>& frame);
 
     Bus& bus_;

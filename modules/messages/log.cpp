@@ -43,8 +43,20 @@ bool LogReader::next(LogEvent& event) {
         truncated_ = !record && records_.cut_short(at_);
         at_ = record ? record->at : bytes_total();
     }
-    if (gap_) add_gap(*gap_, at_, nullptr);
+    if (gap_) add_last_gap(*gap_);
     return false;
+}
+
+/// What follows the last record: room that was reserved holds zeros, and lost events do not end in many.
+void LogReader::add_last_gap(std::uint64_t begin) {
+    constexpr std::uint64_t kLeastZeros = 4096;
+    const std::uint64_t end = bytes_total();
+    std::uint64_t zeros_at = truncated_ ? end : records_.file().zeros_from(begin);
+    if (zeros_at > begin && end - zeros_at < kLeastZeros) zeros_at = end;
+    zeros_ = end - zeros_at;
+    skipped_ += zeros_;
+    if (zeros_at > begin) add_gap(begin, zeros_at, nullptr);
+    gap_.reset();
 }
 
 /// True if a record that begins with the sync word is whole, as far as can be told by what follows it.
@@ -129,6 +141,12 @@ std::string count_text(std::int64_t count, const std::string& what) {
     return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 
+std::string size_text(std::uint64_t bytes) {
+    char text[40];
+    std::snprintf(text, sizeof(text), "%.1f MB", static_cast<double>(bytes) * 1e-6);
+    return bytes < 100000 ? std::to_string(bytes) + " bytes" : text;
+}
+
 std::string gap_text(const LogGap& gap, std::int64_t first_utime) {
     std::string text = "bytes " + std::to_string(gap.at) + " to " + std::to_string(gap.at + gap.bytes) +
                        ", about " + count_text(gap.events, "event") + " lost";
@@ -143,8 +161,10 @@ std::vector<std::string> LogReader::complaints() const {
     const std::string name = records_.file().path().string();
     std::vector<std::string> lines;
     if (truncated_) lines.push_back(name + " is cut short: its last event is not whole");
+    if (zeros_ > 0)
+        lines.push_back(name + ": " + size_text(zeros_) + " of zeros at the end: the log was not closed");
     if (gap_count_ > 0) {
-        lines.push_back(name + ": " + std::to_string(skipped_) + " bytes in " +
+        lines.push_back(name + ": " + std::to_string(skipped_ - zeros_) + " bytes in " +
                         count_text(gap_count_, "place") + " are no whole LCM events, about " +
                         count_text(events_lost_, "event") + " lost (times from the log's first event)");
     }

@@ -47,7 +47,10 @@ class LogReader {
 
     std::uint64_t bytes_read() const { return at_; }
     std::uint64_t bytes_total() const { return records_.file().size(); }
-    std::uint64_t bytes_skipped() const { return skipped_; }   ///< that belong to no record
+    std::uint64_t bytes_skipped() const { return skipped_; }  ///< that belong to no record
+    /// Those of them at the end that are zeros, and no events: who wrote the log reserved room and did not
+    /// close it.
+    std::uint64_t zeros_at_end() const { return zeros_; }
     bool truncated() const { return truncated_; }              ///< the last record is cut short
     const std::vector<LogGap>& gaps() const { return gaps_; }  ///< the first kMaxGaps
     std::int64_t gap_count() const { return gap_count_; }
@@ -63,11 +66,12 @@ class LogReader {
     bool counts(const LogRecord& record);
     std::optional<LogRecord> resume(std::uint64_t from);
     void deliver(const LogRecord& record, LogEvent& event);
+    void add_last_gap(std::uint64_t begin);
     void add_gap(std::uint64_t begin, std::uint64_t end, const LogRecord* next);
     std::int64_t lost_between(std::uint64_t bytes, const LogRecord* next) const;
 
     LogRecords records_;
-    std::uint64_t at_ = 0, skipped_ = 0;
+    std::uint64_t at_ = 0, skipped_ = 0, zeros_ = 0;
     std::optional<std::uint64_t> gap_;         ///< where the one that at_ is in began
     std::optional<LogRecord> before_, ahead_;  ///< the last good record; the one that resume() found
     std::uint64_t ahead_from_ = 0;             ///< where the search for it began

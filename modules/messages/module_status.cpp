@@ -48,13 +48,16 @@ void ModuleStatus::received(std::optional<std::uint32_t> seq) {
     if (seq) seqs_.add(*seq);
 }
 
+void ModuleStatus::count_loss(const std::string& what, std::int64_t count) {
+    if (count > 0) losses_[what] += count;
+}
+
 void ModuleStatus::lost(const std::string& what, std::int64_t count) {
     if (count <= 0) return;
-    std::int64_t& total = losses_[what];
     std::int64_t threshold = 10;
-    while (threshold <= total) threshold *= 10;
-    total += count;
-    if (total >= threshold) spdlog::warn("{}: lost {} {} so far", module_, total, what);
+    while (threshold <= losses_[what]) threshold *= 10;
+    count_loss(what, count);
+    if (losses_[what] >= threshold) spdlog::warn("{}: lost {} {} so far", module_, losses_[what], what);
 }
 
 void ModuleStatus::remark(const std::string& kind, const std::string& text) {

@@ -41,6 +41,8 @@ class ModuleStatus {
     /// and so on, and told by planemap-run's report. An input that is dropped as a whole counts in dropped()
     /// too.
     void lost(const std::string& what, std::int64_t count = 1);
+    /// The same without a warning, where somebody else says it.
+    void count_loss(const std::string& what, std::int64_t count = 1);
     /// What keeps the module from working, or what it found; shown in the status line.
     void set_text(std::string text) { text_ = std::move(text); }
     /// What is true of all that the module says from now on, e.g. that the sensor started again; shown in the

@@ -10,6 +10,7 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <stdexcept>
 
 #include "messages/interrupt.hpp"
 
@@ -122,6 +123,12 @@ int run_main(const std::string& program, const std::function<int()>& body) {
     }
 }
 
+void require_shared(const Bus& bus) {
+    if (!bus.in_process()) return;
+    throw std::invalid_argument("LCM URL '" + bus.url() +
+                                "': a process hears nobody but itself there; give one of udpm, tcpq or file");
+}
+
 Process::Process(std::string module, const std::string& description)
     : module_(std::move(module)), program_("planemap-" + module_), flags_(program_, description) {
     flags_.add("l,lcm-url", lcm_url_,
@@ -137,6 +144,7 @@ int Process::run(int argc, char** argv, const std::function<std::unique_ptr<Shel
         catch_stop_signals();
         Bus bus(lcm_url_);
         const std::unique_ptr<Shell> shell = make_shell(bus);
+        require_shared(bus);
         if (bus.connected()) spdlog::info("on {}", bus.url());
         serve(*shell, bus);
         return 0;

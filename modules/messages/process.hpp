@@ -42,6 +42,10 @@ void log_over_a_drawn_line(bool drawn);
 /// Runs body, and turns an exception that reaches the top into one line on stderr and exit code 1.
 int run_main(const std::string& program, const std::function<int()>& body);
 
+/// Throws std::invalid_argument naming the URL if no other process can be on the bus (memq://): a module
+/// there would wait for ever and not say why.
+void require_shared(const Bus& bus);
+
 /// One module as a process, planemap-<module>.
 class Process {
   public:

@@ -7,6 +7,8 @@
 
 #include "core/stamp.hpp"
 
+#include "core/stamp.hpp"
+
 namespace planemap {
 
 namespace {
@@ -30,14 +32,19 @@ std::optional<std::int64_t> seq_steps(const Message& from, const Message& to) {
 std::optional<std::int64_t> elapsed_us(const Message& from, const Message& to) {
     if (!from.utime || !to.utime) return std::nullopt;
     // Stamps are anything; the difference of two must not overflow.
-    constexpr std::int64_t kFar = std::int64_t{1} << 60;
-    return std::clamp(*to.utime, -kFar, kFar) - std::clamp(*from.utime, -kFar, kFar);
+    return std::clamp(*to.utime, -kFarthestUtime, kFarthestUtime) -
+           std::clamp(*from.utime, -kFarthestUtime, kFarthestUtime);
 }
 
 /// In time, or by number where there is no time.
 bool is_after(const Message& from, const Message& to) {
     if (const auto elapsed = elapsed_us(from, to)) return *elapsed > 0;
     return seq_steps(from, to).value_or(0) > 0;
+}
+
+/// Whether both say the same id: then it is one sender, whatever its numbers and stamps do.
+bool known_as_one(const Message& a, const Message& b) {
+    return a.sender && a.sender == b.sender;
 }
 
 /// Longer steps from message to message are not usual, and times a count they must not overflow.
@@ -108,7 +115,8 @@ Verdict SenderGuard::in_order(const Message& message) {
     if (same_place && message.checksum == last.checksum) return Verdict::kRepeated;
     if (same_place && steps.value_or(0) == 0) {
         if (!named_)
-            news_ = "another sender on " + channel_ + " says other things under the same number and time";
+            news_ = (known_as_one(last, message) ? "the sender on " : "another sender on ") + channel_ +
+                    " says other things under the same number and time";
         named_ = true;
         return Verdict::kForeign;
     }
@@ -162,7 +170,8 @@ bool SenderGuard::takes_over(const Stream& stream) const {
 
 Verdict SenderGuard::switch_to(const Stream& stream) {
     const auto elapsed = elapsed_us(followed_->last, stream.last);
-    if (stream.interleaved || !same_sender(followed_->last, stream.last)) {
+    const bool one = known_as_one(followed_->last, stream.last);
+    if ((stream.interleaved && !one) || !same_sender(followed_->last, stream.last)) {
         news_ = "the first sender on " + channel_ + " has been silent for " + seconds_text(kSilence_us) +
                 "; another one is followed from here on";
     } else if (elapsed && *elapsed < 0) {
@@ -179,10 +188,14 @@ Verdict SenderGuard::switch_to(const Stream& stream) {
 }
 
 Verdict SenderGuard::judge_aside(const Stream& stream, bool foreign) {
+    if (known_as_one(followed_->last, stream.last)) foreign = false;
     // One message alone may be a damaged one.
     if (foreign && stream.heard > 1 && !named_) {
         named_ = true;
-        news_ = "another sender on " + channel_ + " is ignored while the first one lives";
+        const bool jumps_only = same_sender(followed_->last, stream.last);
+        news_ = jumps_only ? "another sender or messages out of order on " + channel_ +
+                                 ": ignored while the first stream lives"
+                           : "another sender on " + channel_ + " is ignored while the first one lives";
     }
     if (foreign) return Verdict::kForeign;
     if (is_after(followed_->last, stream.last)) return Verdict::kJumped;

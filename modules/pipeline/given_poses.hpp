@@ -22,6 +22,8 @@ class GivenPoses {
     const KeyframeTrajectory& keyframes() const { return keyframes_; }
     /// Keyframes that there is no pose for; they are not mapped.
     int missing() const { return missing_; }
+    /// True if there were keyframes, and no pose for any of them.
+    bool fit_nothing() const { return missing_ > 0 && keyframes_.keyframes.empty(); }
 
   private:
     void on_keyframe(const RawMessage& message);

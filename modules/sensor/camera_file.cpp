@@ -169,20 +169,23 @@ PinholeCamera read_pinhole(const Reader& reader) {
     PinholeCamera camera;
     camera.width = size("width");
     camera.height = size("height");
-    // From a fish's eye to a telescope; a principal point further out than the image is wide was never meant.
+    using Limits = CameraLimits;
     const double longer = std::max(camera.width, camera.height);
-    const Bounds focal{0.05 * longer, 50 * longer, " pixels"};
+    const Bounds focal{Limits::kLeastFocal * longer, Limits::kMostFocal * longer, " pixels"};
+    const auto centre = [](double side) {
+        return Bounds{-Limits::kOutside * side, (1 + Limits::kOutside) * side, " pixels"};
+    };
     camera.fx = reader.number("fx", focal, true, 1);
     camera.fy = reader.number("fy", focal, true, 1);
-    camera.cx = reader.number("cx", {-1.0 * camera.width, 2.0 * camera.width, " pixels"}, true);
-    camera.cy = reader.number("cy", {-1.0 * camera.height, 2.0 * camera.height, " pixels"}, true);
+    camera.cx = reader.number("cx", centre(camera.width), true);
+    camera.cy = reader.number("cy", centre(camera.height), true);
     return camera;
 }
 
 Pose read_transform(const Reader& reader) {
     reader.require_known({"rotation_vector_rad", "translation_m"});
     const auto r = reader.numbers("rotation_vector_rad", 3, {-6.2832, 6.2832, " rad"});
-    const auto t = reader.numbers("translation_m", 3, {-10, 10, " m"});
+    const auto t = reader.numbers("translation_m", 3, {-2, 2, " m"});
     if (!r || !t) return Pose::Identity();
     Twist twist;
     twist << (*t)[0], (*t)[1], (*t)[2], (*r)[0], (*r)[1], (*r)[2];
@@ -226,15 +229,8 @@ void read_noise(const Reader& reader, DepthNoise& noise) {
 }
 
 void read_units(const Reader& reader, CameraInfo& camera) {
-    constexpr Bounds kUnits{1, 1e6, ", e.g. 1000 or 5000"};
-    constexpr double kMostRaw = 65535;
+    constexpr Bounds kUnits{CameraLimits::kLeastUnits, CameraLimits::kMostUnits, ", e.g. 1000 or 5000"};
     camera.depth_units_per_metre = reader.number("depth_units_per_metre", kUnits, true, 1000);
-    const double farthest = kMostRaw / camera.depth_units_per_metre;
-    if (reader.has("depth_units_per_metre") && farthest <= camera.depth_min_m) {
-        reader.wrong("depth_units_per_metre", "such that 16 bits reach beyond the nearest depth, " +
-                                                  number_text(camera.depth_min_m) + " m: they end at " +
-                                                  number_text(farthest) + " m");
-    }
 }
 
 /// What stands in the file and is not used.

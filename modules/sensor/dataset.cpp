@@ -123,7 +123,7 @@ void blame(const fs::path& file, const std::exception& error, ReadResult& result
 void blame_end(const fs::path& file, ReadResult& result) {
     result.end_missing = true;
     if (!result.message.empty()) return;  // of the colour, which is worse
-    blame(file, std::runtime_error("the PNG is cut short, but behind its last pixel; it is used"), result);
+    blame(file, std::runtime_error(kEndMissing), result);
 }
 
 }  // namespace

@@ -20,7 +20,10 @@ int main(int argc, char** argv) {
     return process.run(argc, argv, [&](planemap::Bus& bus) {
         auto shell =
             std::make_unique<planemap::SensorShell>(bus, planemap::open_source(input, source), options);
-        if (check) std::exit(0);
+        if (check) {
+            require_shared(bus);
+            std::exit(0);
+        }
         return shell;
     });
 }

@@ -16,6 +16,9 @@ inline constexpr int kMaxImageSide = 8192;
 /// True when the bytes start as a PNG does.
 bool is_png(std::string_view bytes);
 
+/// What is said of a file that is cut short where no pixel is lost: it is used all the same.
+inline constexpr const char* kEndMissing = "the PNG is cut short, but behind its last pixel; it is used";
+
 /// Decodes a 16-bit greyscale PNG. Throws std::runtime_error (reason only) for anything else: another type or
 /// bit depth, a size other than width x height, a checksum that does not hold, a file cut short. With
 /// `end_missing`, a file that is cut short behind its last pixel is no error: it is set to whether that is

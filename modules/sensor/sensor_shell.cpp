@@ -43,7 +43,7 @@ SensorShell::SensorShell(Bus& bus, std::unique_ptr<FrameSource> source, SensorSh
 
 /// The first fault of each kind is told at once; the status and the bus's complaints count them all.
 void SensorShell::complain(const std::string& what, const ReadResult& result) {
-    status_.lost(what);
+    status_.count_loss(what);
     bus_.complaints().add(result.message, what + (result.reason.empty() ? result.message : result.reason));
 }
 

@@ -12,6 +12,7 @@
 #include <tuple>
 
 #include "core/files.hpp"
+#include "core/trajectory_file.hpp"
 #include "core/validation.hpp"
 
 namespace planemap::simulator {
@@ -96,11 +97,15 @@ const std::map<std::string, Setter>& setters() {
         {"speed", number_setter(&O::speed_m_s)},
         {"turn", number_setter(&O::turn_deg_s)},
         {"visits", number_setter(&O::visits)},
-        {"trajectory", [](O& o, const std::string&, const std::string& text) { o.trajectory = text; }}};
+        {"trajectory", [](O& o, const std::string& key, const std::string& text) {
+             if (text.empty())
+                 throw std::invalid_argument("simulator parameter " + key + " is empty, must be a file");
+             o.trajectory = text;
+         }}};
     return kSetters;
 }
 
-void set_parameter(SimulatorOptions& options, const std::string& parameter) {
+void set_parameter(SimulatorOptions& options, const std::string& parameter, std::vector<std::string>& seen) {
     const auto equals = parameter.find('=');
     const std::string key = parameter.substr(0, equals);
     const auto setter = setters().find(key);
@@ -110,6 +115,9 @@ void set_parameter(SimulatorOptions& options, const std::string& parameter) {
         throw std::invalid_argument(
             "\"" + parameter + "\" is not a simulator parameter; KEY=VALUE with a key of: " + joined(known));
     }
+    if (std::find(seen.begin(), seen.end(), key) != seen.end())
+        throw std::invalid_argument("simulator parameter " + key + " is given twice");
+    seen.push_back(key);
     setter->second(options, key, parameter.substr(equals + 1));
 }
 
@@ -165,7 +173,8 @@ void SimulatorOptions::validate() const {
     within(rate_hz, 0.1, 1000, "rate", "0.1 to 1000");
     within(width, 16, 4096, "width", "16 to 4096");
     within(height, 16, 4096, "height", "16 to 4096");
-    within(depth_units_per_metre, 1, 1e6, "units", "1 to 1000000");
+    within(depth_units_per_metre, CameraLimits::kLeastUnits, CameraLimits::kMostUnits, "units",
+           "100 to 100000");
     within(depth_min_m, 0, 100, "min", "0 to 100");
     within(depth_max_m, depth_min_m + 1e-9, 1000, "max", "greater than min, at most 1000");
     within(color_noise, 0, 50, "color_noise", "0 to 50");
@@ -209,9 +218,10 @@ SimulatorOptions parse_simulator_name(const std::string& name) {
     SimulatorOptions options;
     const auto question = name.find('?');
     options.world = name.substr(4, question == std::string::npos ? question : question - 4);
+    std::vector<std::string> seen;
     for (std::size_t from = question; from != std::string::npos;) {
         const auto to = name.find('&', from + 1);
-        set_parameter(options, name.substr(from + 1, to == std::string::npos ? to : to - from - 1));
+        set_parameter(options, name.substr(from + 1, to == std::string::npos ? to : to - from - 1), seen);
         from = to;
     }
     options.validate();
@@ -252,7 +262,7 @@ void SimulatedSource::walk() {
 
 void SimulatedSource::follow_trajectory() {
     const Trajectory recorded = read_trajectory(options_.trajectory);
-    if (recorded.empty()) throw std::runtime_error(options_.trajectory + ": no poses");
+    require_poses(options_.trajectory, recorded);
     path_ = fit_path(recorded, world_);
     const auto duration_s = static_cast<double>(path_.back().utime - path_.front().utime) * 1e-6;
     const int longest =

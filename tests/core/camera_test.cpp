@@ -108,12 +108,33 @@ TEST(Camera, ResolutionsTooFarApartAreRefusedWithBothFocalLengths) {
     }
     CameraInfo info = kinect();
     info.color.fx = 2100;  // depth's 525 is a quarter
+    info.color.fy = 1060;
     EXPECT_THAT(error_of(info),
                 HasSubstr("depth.fx / color.fx is 0.25 (525 / 2100 pixels), must be 0.3 to 4"));
     EXPECT_EQ(error_of(info).find("fy"), std::string::npos);
     info = kinect();
     info.color.fy = 100;
     EXPECT_THAT(error_of(info), HasSubstr("depth.fy / color.fy is 5.3 (530 / 100 pixels), must be 0.3 to 4"));
+}
+
+TEST(Camera, NumbersThatNoCameraHasAreRefused) {
+    const auto with = [](const auto& change) {
+        CameraInfo info = kinect();
+        change(info);
+        return error_of(info);
+    };
+    EXPECT_THAT(with([](auto& c) { c.depth.fx = c.color.fx = 260; }),
+                HasSubstr("depth.fx / depth.fy is 0.490566 (260 / 530 pixels), must be 0.5 to 2"));
+    EXPECT_THAT(with([](auto& c) { c.color.fx = c.color.fy = 100; }),
+                HasSubstr("color.fx is 100, must be 128 to 6400 pixels"));
+    EXPECT_THAT(with([](auto& c) { c.depth.cx = 3195; }), HasSubstr("depth.cx is 3195, must be -320 to 960"));
+    EXPECT_THAT(with([](auto& c) { c.depth_units_per_metre = 1; }), HasSubstr("depth_units_per_metre is 1"));
+    EXPECT_THAT(
+        with([](auto& c) { c.depth_min_m = 70, c.depth_max_m = 80; }),
+        HasSubstr("depth_units_per_metre is 1000, must be such that 16 bits reach beyond depth_min_m"));
+    EXPECT_THAT(with([](auto& c) { c.noise = {0, 0, 0}; }), HasSubstr("noise at 0.3 m is 0"));
+    EXPECT_THAT(with([](auto& c) { c.noise = {1e-3, 0.9, -9}; }), HasSubstr("at most its far end"));
+    EXPECT_EQ(with([](auto& c) { c.noise = {0, 0.001, 0}; }), "");
 }
 
 }  // namespace

@@ -193,5 +193,49 @@ TEST(TrajectoryFile, LinesOfDifferentFormsAreRefused) {
                 AllOf(HasSubstr("t.txt:2:"), HasSubstr("nanoseconds")));
 }
 
+TEST(TrajectoryFile, AbsurdPositionsAreRefusedByLineAndField) {
+    const TemporaryFolder folder;
+    const std::string good = "1 0 0 0 0 0 0 1\n";
+    EXPECT_THAT(error_of(folder, good + "2 0 1e308 0 0 0 0 1\n"),
+                HasSubstr("t.txt:2: ty is 1e+308 m, must be -1e+08 to 1e+08 m"));
+    EXPECT_THAT(error_of(folder, good + "2 -1.1e8 0 0 0 0 0 1\n"), HasSubstr("t.txt:2: tx is -1.1e+08 m"));
+    EXPECT_THAT(error_of(folder, "1 0 0 0 0 1 0 0 0 0 1 1e9\n"), HasSubstr("t.txt:1: tz is 1e+09 m"));
+    EXPECT_THAT(error_of(folder, "0 0 0 1e400 0 0 0 1\n"), HasSubstr("not finite"));
+    EXPECT_EQ(read_text(folder, "1 691607.3 5335932.1 520 0 0 0 1\n").poses.size(), 1u) << "UTM";
+}
+
+TEST(TrajectoryFile, QuaternionsThatAreNoRotationAreRefused) {
+    const TemporaryFolder folder;
+    for (const char* q : {"0 0 0 3", "0 0 0 0", "0 0 0 1.02", "0 0.5 0.5 0.5"}) {
+        EXPECT_THAT(
+            error_of(folder, "1 0 0 0 0 0 0 1\n2 0 0 0 " + std::string(q) + "\n"),
+            AllOf(HasSubstr("t.txt:2: the quaternion is not of unit length"), HasSubstr("0.99 to 1.01")));
+    }
+    EXPECT_EQ(error_of(folder, "1 0 0 0 0 0 0.71 0.71\n"), "no error") << "two digits";
+}
+
+TEST(TrajectoryFile, PosesOfOneStampAreCountedInOneLine) {
+    const TemporaryFolder folder;
+    const std::string first = "1 0 0 0 0 0 0 1\n", moved = "1 2 0 0 0 0 0 1\n", later = "2 0 0 0 0 0 0 1\n";
+    EXPECT_TRUE(read_text(folder, first + later).notes.empty());
+    EXPECT_THAT(read_text(folder, first + first + later).notes,
+                testing::ElementsAre(testing::EndsWith("t.txt: 1 pose stands there twice")));
+    const TrajectoryFile both = read_text(folder, later + first + first + first + moved);
+    EXPECT_THAT(both.notes,
+                testing::ElementsAre(testing::EndsWith(
+                    "t.txt: 2 poses stand there twice, 1 pose says something else than another of the same "
+                    "stamp, of which the last is taken")));
+    std::vector<std::string> notes;
+    EXPECT_EQ(read_trajectory(folder / "t.txt", &notes).size(), both.poses.size());
+    EXPECT_EQ(notes, both.notes);
+}
+
+TEST(TrajectoryFile, WhatATrajectoryCovers) {
+    EXPECT_EQ(span_text({}), "nothing");
+    EXPECT_EQ(span_text(some_poses()), "1500000000.033 to 1500000000.667 s");
+    EXPECT_NO_THROW(require_poses("t.txt", some_poses()));
+    EXPECT_THROW(require_poses("t.txt", {}), std::runtime_error);
+}
+
 }  // namespace
 }  // namespace planemap

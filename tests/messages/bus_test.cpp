@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "messages/bus.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <spdlog/sinks/ostream_sink.h>
 #include <spdlog/spdlog.h>
@@ -80,13 +81,32 @@ TEST(Bus, UdpmGetsAReceiveBuffer) {
 
 /// What no network can ever make good ends at once, in one line that names the URL.
 TEST(Bus, AMalformedUrlIsAnErrorAtOnce) {
-    for (const char* url :
-         {"nonsense://x", "udpm", "udpm:/239.255.76.67:7667", "udpm://127.0.0.1:7667", "udpm://host:7667",
-          "udpm://239.255.76.67:port", "udpm://239.255.76.67:0", "udpm://239.255.76.67:70000",
-          "udpm://239.255.76.67:7667?ttl=far", "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=-1",
-          "mpudpm://1.2.3.4", "tcpq://127.0.0.1:", "tcpq://127.0.0.1:seven", "tcpq://a b:7700",
-          "tcpq://127.0.0.1:7700:1", "file://", "file:///no/such/log", "file:///tmp",
-          "file:///tmp/x?mode=q"}) {
+    for (const char* url : {"nonsense://x",
+                            "udpm",
+                            "udpm:/239.255.76.67:7667",
+                            "udpm://127.0.0.1:7667",
+                            "udpm://host:7667",
+                            "udpm://239.255.76.67:port",
+                            "udpm://239.255.76.67:0",
+                            "udpm://239.255.76.67:70000",
+                            "udpm://239.255.76.67:7667?ttl=far",
+                            "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=-1",
+                            "mpudpm://1.2.3.4",
+                            "tcpq://127.0.0.1:",
+                            "tcpq://127.0.0.1:seven",
+                            "tcpq://a b:7700",
+                            "tcpq://127.0.0.1:7700:1",
+                            "file://",
+                            "file:///no/such/log",
+                            "file:///tmp",
+                            "file:///tmp/x?mode=q",
+                            "udpm://239.255.76.67:7667?tll=1",
+                            "udpm://239.255.76.67:7667?ttl",
+                            "udpm://239.255.76.67:7667?ttl=0&ttl=1",
+                            "udpm://239.255.76.67:7667?ttl=",
+                            "tcpq://127.0.0.1:7700?ttl=1",
+                            "memq://?ttl=1",
+                            "file:///tmp/x?mode=w&sped=2"}) {
         const auto start = std::chrono::steady_clock::now();
         try {
             Bus bus(url);
@@ -99,6 +119,16 @@ TEST(Bus, AMalformedUrlIsAnErrorAtOnce) {
             EXPECT_EQ(what.find('\n'), std::string::npos) << what;
         }
         EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(1)) << url;
+    }
+}
+
+TEST(Bus, AnUnknownOptionOfAUrlNamesTheKnownOnes) {
+    try {
+        Bus bus("udpm://239.255.76.67:7667?tll=1");
+        ADD_FAILURE() << "taken";
+    } catch (const std::runtime_error& error) {
+        EXPECT_THAT(error.what(),
+                    testing::HasSubstr("'tll' is not an option of udpm; they are recv_buf_size, ttl"));
     }
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/stamp.hpp"
 #include "messages/sample_messages.hpp"
 
 namespace planemap {
@@ -109,6 +110,40 @@ TEST(Convert, InconsistentMessagesAreErrors) {
     refused([](keyframe_t& m) { m.regions[0].ring_sizes[0] = 2; });
     refused([](keyframe_t& m) { m.regions[0].vertices[0][0] = std::nanf(""); });
     refused([](keyframe_t& m) { m.regions[0].half_extents[0] = -1; });
+}
+
+/// Whether a message with each of its stamps at both ends of the range is refused by the stamp's name.
+template <typename Message>
+void expect_bounded(const Message& good, std::int64_t Message::*stamp, const std::string& name) {
+    EXPECT_NO_THROW(from_message(good)) << name;
+    for (const std::int64_t utime : {INT64_MIN, INT64_MAX, kFarthestUtime + 1, -kFarthestUtime - 1}) {
+        Message bad = good;
+        bad.*stamp = utime;
+        try {
+            from_message(bad);
+            ADD_FAILURE() << name << " " << utime;
+        } catch (const MessageError& error) {
+            EXPECT_EQ(std::string(error.what()).find(name + " is " + std::to_string(utime) + " us"), 0u)
+                << error.what();
+        }
+    }
+    Message far = good;
+    far.*stamp = -kFarthestUtime;
+    EXPECT_NO_THROW(from_message(far)) << name;
+}
+
+TEST(Convert, StampsOfAllMessagesAreBounded) {
+    expect_bounded(to_message(test::sample_camera(), 1, 2), &camera_info_t::utime, "camera_info.utime");
+    expect_bounded(to_message(FrameRegions{1, {}}, 2), &planar_regions_t::utime, "planar_regions.utime");
+    expect_bounded(to_message(OdometryEstimate{}, 2), &odometry_t::utime, "odometry.utime");
+    expect_bounded(to_message(OdometryEstimate{}, 2), &odometry_t::pose_utime, "odometry.pose_utime");
+    expect_bounded(to_message(sample_keyframe(), 2), &keyframe_t::utime, "keyframe.utime");
+    expect_bounded(to_message(sample_keyframe(), 2), &keyframe_t::pose_utime, "keyframe.pose_utime");
+    expect_bounded(to_message(KeyframeTrajectory{}, 2), &trajectory_t::utime, "trajectory.utime");
+    expect_bounded(to_message(PlaneMap{}, 2), &plane_map_t::utime, "plane_map.utime");
+    KeyframeTrajectory trajectory;
+    trajectory.keyframes.push_back({1, INT64_MIN, Pose::Identity()});
+    EXPECT_THROW(from_message(to_message(trajectory, 2)), MessageError);
 }
 
 TEST(Convert, TrajectoryRoundTripAndOrder) {

@@ -145,13 +145,47 @@ TEST(Flags, ConfigFilesAreReadLineByLine) {
          {std::pair("\nmap-sede = 1\n", "c.ini:2: unknown option map-sede, did you mean map-seed?"),
           {"map-seed = 1\nmap-seed = 2\n", "c.ini:2: map-seed is given twice"},
           {"map-method = \"cells\n", "c.ini:1: the value of map-method has no end"},
-          {"map-seed = one\n", "map-seed"},
+          {"\nmap-seed = one\n", "c.ini:2: map-seed: \"one\" is no whole number from 0 to"},
+          {"map-max-points = 1e9\n", "c.ini:1: map-max-points: \"1e9\" is no whole number"},
+          {"map-delta = nan\n", "c.ini:1: map-delta: \"nan\" is no finite number"},
+          {"map-color = blue\n", "c.ini:1: map-color: "},
+          {"quiet = maybe\n", "c.ini:1: quiet: \"maybe\" is neither true nor false"},
+          {"map-method =\n", "c.ini:1: map-method: must not be empty"},
           {"[map]\nseed = 1\n", "c.ini:1: unknown option [map]"}}) {
         const Outcome bad = with(text);
         EXPECT_EQ(bad.code, 2) << text;
         EXPECT_THAT(bad.err, HasSubstr(reason));
     }
     expect_error({"in", "-o", "x", "--config", folder / "missing.ini"}, HasSubstr("missing.ini"));
+}
+
+TEST(Flags, NumbersAreDecimalAndWithinTheirRange) {
+    const std::vector<std::string> good{"in", "-o", "x"};
+    const auto with = [&](const std::string& flag, const std::string& value) {
+        std::vector<std::string> arguments = good;
+        arguments.insert(arguments.end(), {flag, value});
+        return arguments;
+    };
+    for (const char* seed : {"-1", "18446744073709551616", "1.5", "0x10", "1e3", "", " 1", "one"}) {
+        expect_error(with("--map-seed", seed),
+                     AllOf(HasSubstr("--map-seed"), HasSubstr("whole number from 0")));
+        expect_error(with("--map-other-seed", seed), HasSubstr("--map-other-seed"));
+    }
+    for (const char* points : {"2147483648", "-2147483649", "3.0", "nan"})
+        expect_error(with("--map-max-points", points), HasSubstr("-2147483648 to 2147483647"));
+    for (const char* metres : {"nan", "inf", "-inf", "1e999", "0x1p3", "1,5"})
+        expect_error(with("--map-merge-distance-m", metres), HasSubstr("no finite number"));
+    EXPECT_EQ(parse(with("--map-seed", "010")).options.seed, 10u);
+    EXPECT_EQ(parse(with("--map-max-points", "+7")).options.max_points, 7);
+    EXPECT_EQ(parse(with("--map-merge-distance-m", "-.5e-1")).options.merge_distance_m, -0.05);
+}
+
+TEST(Flags, EmptyTextIsNoValue) {
+    expect_error({"in", "-o", ""}, AllOf(HasSubstr("--output"), HasSubstr("must not be empty")));
+    expect_error({"in", "--output="}, HasSubstr("--output"));
+    expect_error({"", "-o", "x"}, HasSubstr("input: must not be empty"));
+    expect_error({"in", "-o", "x", "--map-method", ""}, HasSubstr("--map-method: must not be empty"));
+    expect_error({"in", "-o", "x", "--map-color", ""}, HasSubstr("--map-color"));
 }
 
 TEST(Flags, ValuesAreTyped) {

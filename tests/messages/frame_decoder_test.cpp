@@ -132,6 +132,26 @@ TEST_F(Subscribed, LateAndRepeatedFramesAndStampsThatGoBackAreCountedApart) {
     EXPECT_EQ(status_.received_count(), 21);
 }
 
+TEST_F(Subscribed, StampsAtTheEndsOfTheirRangeAreErrors) {
+    publish({1000000, 0});
+    for (const std::int64_t utime : {INT64_MIN, INT64_MAX, (std::int64_t{1} << 60) + 1})
+        for (std::uint32_t i = 1; i < 4; ++i) publish({utime, i});
+    publish(other_camera_);  // another description looks at stamps, too
+    publish({INT64_MIN, 4});
+    EXPECT_EQ(status_.decode_error_count(), 10);
+    EXPECT_EQ(bus_.handler_errors(), 10);
+    publish({1033333, 5});
+    EXPECT_EQ(frames_.size(), 2u) << "the stream goes on";
+
+    auto message =
+        frame_message(DepthImage(64, 48, 900), RgbImage(64, 48), ColorEncoding::kRaw, DepthEncoding::kRaw);
+    message.utime = 1066666;
+    message.images[0].utime = INT64_MIN;
+    bus_.publish(channels::kFrame, message);
+    bus_.drain();
+    EXPECT_EQ(status_.decode_error_count(), 11) << "odometry takes the colour image's time";
+}
+
 TEST_F(Subscribed, TheSecondOfTwoSendersIsIgnoredWhileTheFirstLives) {
     for (int i = 0; i < 100; ++i) {
         const auto seq = static_cast<std::uint32_t>(i);

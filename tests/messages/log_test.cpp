@@ -248,6 +248,27 @@ TEST_F(Log, ZerosThatACrashLeavesCostWhatTheyCover) {
     }
 }
 
+TEST_F(Log, ZerosAtTheEndAreNoEvents) {
+    const std::string log = sample(40);
+    for (const std::size_t zeros : {28u, 5000u, 3000000u}) {
+        EXPECT_EQ(read(log + std::string(zeros, '\0')).size(), 40u) << zeros;
+        EXPECT_EQ(skipped_, zeros);
+        EXPECT_EQ(lost_, 0) << zeros;
+        ASSERT_EQ(complaints_.size(), 1u) << zeros;
+        const std::string size = zeros == 3000000u ? "3.0 MB" : std::to_string(zeros) + " bytes";
+        EXPECT_EQ(complaints_[0],
+                  file_.string() + ": " + size + " of zeros at the end: the log was not closed");
+    }
+    // The last event was not written to its end, either.
+    EXPECT_EQ(read(log.substr(0, log.size() - 10) + std::string(1000000, '\0')).size(), 39u);
+    EXPECT_EQ(lost_, 1);
+    ASSERT_EQ(complaints_.size(), 3u);
+    EXPECT_NE(complaints_[0].find("1.0 MB of zeros at the end"), std::string::npos) << complaints_[0];
+    EXPECT_NE(complaints_[1].find("about 1 event lost"), std::string::npos) << complaints_[1];
+    EXPECT_TRUE(read(std::string(100000, '\0')).empty());
+    EXPECT_EQ(lost_, 0);
+}
+
 TEST_F(Log, LogsOneAfterTheOtherCutAnywhereGiveAllThatIsWhole) {
     std::vector<std::size_t> starts;
     const std::string log = sample(10, &starts);

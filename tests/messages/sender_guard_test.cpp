@@ -153,7 +153,10 @@ TEST_F(Guard, ASecondSenderIsNamedAndIgnoredWhileTheFirstLives) {
             ASSERT_NE(judge(c.second.next()), Verdict::kTake) << c.what;
         }
         EXPECT_GE(count_[Verdict::kForeign], 199) << c.what;
-        EXPECT_TRUE(said("another sender on OPENNI_FRAME is ignored")) << c.what;
+        const bool told_apart = c.first.id || c.first.kind;
+        EXPECT_TRUE(said(told_apart ? "another sender on OPENNI_FRAME is ignored"
+                                    : "another sender or messages out of order on OPENNI_FRAME"))
+            << c.what;
         EXPECT_LE(news_.size(), 2u) << c.what;
         // The first falls silent: two seconds of the other, then that one.
         count_.clear();
@@ -195,6 +198,23 @@ TEST_F(Guard, WithoutTimeStampsNumbersOrderTheStream) {
     }
     EXPECT_TRUE(said("another sender"));
     EXPECT_GE(count_[Verdict::kForeign], 19);
+}
+
+TEST_F(Guard, OneSendersShuffledMessagesAreNotCalledAnothers) {
+    for (const bool with_id : {true, false}) {
+        guard_ = SenderGuard("OPENNI_FRAME");
+        count_.clear();
+        news_.clear();
+        Sender sender;
+        if (with_id) sender.id = 7;
+        std::vector<Message> messages;
+        for (int i = 0; i < 400; ++i) messages.push_back(sender.next());
+        for (std::size_t i = 0; i < messages.size(); ++i) judge(messages[i * 149 % messages.size()]);
+        EXPECT_FALSE(news_.empty());
+        EXPECT_FALSE(said("another sender on")) << news_[0];
+        EXPECT_EQ(said("another sender or messages out of order"), !with_id);
+        EXPECT_EQ(count_[Verdict::kForeign] == 0, with_id);
+    }
 }
 
 TEST_F(Guard, AnyStampsAreJudgedWithoutOverflow) {

@@ -85,6 +85,18 @@ TEST_F(SegmentImages, ABadImageCostsItselfOnly) {
     EXPECT_FALSE(std::filesystem::exists(options.output / "size.png"));
 }
 
+TEST_F(SegmentImages, ImagesCutBehindTheirLastPixelAreUsedAndSaid) {
+    const std::string png = encode_depth_png(small_depth());
+    const std::string cut = png.substr(0, png.size() - 12);  // IEND
+    const SegmentImagesReport report =
+        segment({image, folder.write("cut.png", cut), folder.write("too.png", cut)});
+    EXPECT_THAT(report.errors, IsEmpty());
+    EXPECT_THAT(report.notes,
+                ElementsAre(AllOf(HasSubstr("cut.png: the PNG is cut short, but behind its last pixel"),
+                                  HasSubstr("and 1 more such images"))));
+    EXPECT_EQ(json("cut.json").at("regions"), json("a.json").at("regions"));
+}
+
 TEST_F(SegmentImages, AnImageWithoutReadingsHasNoRegions) {
     const SegmentImagesReport report =
         segment({folder.write("dark.png", encode_depth_png(DepthImage(320, 240)))});

@@ -131,8 +131,8 @@ TEST(CameraFile, UnknownKeysAreErrorsWithTheNearestOne) {
 TEST(CameraFile, AbsurdValuesAreRefusedWithWhatIsAllowed) {
     const std::pair<const char*, const char*> cases[] = {
         {R"("color_from_depth": {"rotation_vector_rad": [0, 0, 0], "translation_m": [1e6, 0, 0]})",
-         "color_from_depth.translation_m is [1000000.0,0,0], must be a list of 3, each a number from -10 to "
-         "10 m"},
+         "color_from_depth.translation_m is [1000000.0,0,0], must be a list of 3, each a number from -2 to "
+         "2 m"},
         {R"("color_from_depth": {"rotation_vector_rad": [90, 0, 0], "translation_m": [0, 0, 0]})",
          "color_from_depth.rotation_vector_rad is [90,0,0]"},
         {R"("noise": {"base_m": 1e300})", "noise.base_m is 1e+300, must be a number from 0 to 1 m"},
@@ -143,6 +143,10 @@ TEST(CameraFile, AbsurdValuesAreRefusedWithWhatIsAllowed) {
         {R"("depth_range_m": [0, 0])", "depth_range_m is [0,0]"},
         {R"("depth_range_m": [70, 80])",
          "depth_units_per_metre is 1000, must be such that 16 bits reach beyond"},
+        {R"("noise": {"base_m": 0, "quadratic_per_m": 0, "offset_m": 0})",
+         "camera.json: camera info: noise at 0.3 m is 0, must be at least 1e-06 m"},
+        {R"("noise": {"base_m": 0})", "noise at 0.4 m is 0, must be"},
+        {R"("noise": {"quadratic_per_m": 0.9, "offset_m": -9})", "must be at most its far end, 8 m"},
         {R"("poses_of": "depth_camera")", "poses_of is \"depth_camera\", must be color_camera"},
         {R"("noise": {"base_m": "NaN"})", "noise.base_m is \"NaN\""},
     };
@@ -153,13 +157,29 @@ TEST(CameraFile, AbsurdValuesAreRefusedWithWhatIsAllowed) {
         read(R"({"depth_camera": {"width": 640, "height": 480, "fx": 1e9, "fy": 1e-3, "cx": 1e5, "cy": -1e5},
                  "depth_units_per_metre": 1e-9})");
     });
-    for (const char* expected : {"depth_camera.fx is 1000000000.0, must be a number from 32 to 32000 pixels",
-                                 "depth_camera.fy is 0.001",
-                                 "depth_camera.cx is 100000.0, must be a number from -640 to 1280 pixels",
-                                 "depth_camera.cy is -100000.0",
-                                 "depth_units_per_metre is 1e-09, must be a number from 1 to 1e+06"}) {
+    for (const char* expected :
+         {"depth_camera.fx is 1000000000.0, must be a number from 128 to 6400 pixels",
+          "depth_camera.fy is 0.001", "depth_camera.cx is 100000.0, must be a number from -320 to 960 pixels",
+          "depth_camera.cy is -100000.0",
+          "depth_units_per_metre is 1e-09, must be a number from 100 to 100000"}) {
         EXPECT_THAT(camera, HasSubstr(expected));
     }
+}
+
+TEST(CameraFile, MistypedFocalLengthsAreRefused) {
+    const auto with_focal = [](const char* fx, const char* fy) {
+        return error_of([&] {
+            read(R"({"depth_camera": {"width": 640, "height": 480, "fx": )" + std::string(fx) +
+                 R"(, "fy": )" + fy + R"(, "cx": 320, "cy": 240}, "depth_units_per_metre": 1000})");
+        });
+    };
+    EXPECT_THAT(with_focal("52", "5250"),
+                HasSubstr("depth_camera.fx is 52, must be a number from 128 to 6400"));
+    EXPECT_THAT(
+        with_focal("200", "525"),
+        AllOf(HasSubstr("camera.json"), HasSubstr("depth.fx / depth.fy is 0.380952 (200 / 525 pixels), must "
+                                                  "be 0.5 to 2")));
+    EXPECT_THAT(with_focal("0.525", "0.525"), HasSubstr("depth_camera.fy is 0.525"));
 }
 
 TEST(CameraFile, SyntaxErrorsHaveLineAndColumn) {

@@ -45,6 +45,11 @@ TEST(SimulatorName, MistakesAreNamedWithWhatThereIs) {
     EXPECT_THAT(error("sim:office?frames=-1&rate=0&blur=17&width=5&min=nan"),
                 AllOf(HasSubstr("frames"), HasSubstr("rate"), HasSubstr("blur"), HasSubstr("width"),
                       HasSubstr("min")));
+    EXPECT_EQ(error("sim:office?frames=3&seed=1&frames=4"), "simulator parameter frames is given twice");
+    EXPECT_THAT(error("sim:office?trajectory="), HasSubstr("trajectory is empty"));
+    EXPECT_THAT(error("sim:office?units=1&max=1e9&speed=inf&seed=-1"), HasSubstr("seed is \"-1\""));
+    EXPECT_THAT(error("sim:office?units=1&max=1e9&speed=inf"),
+                AllOf(HasSubstr("units is 1, must be 100 to 100000"), HasSubstr("max"), HasSubstr("speed")));
     EXPECT_NE(error("office"), "");
 }
 

@@ -14,7 +14,7 @@ refused() {
     local words="$1" before after
     shift
     before="$(cd "$work" && find . -type f -exec sha256sum {} + | sort; find "$work" | sort)"
-    if "$launch" --bin "$bin" --lcm-url memq:// "$@" >/dev/null 2>"$said"; then
+    if "$launch" --bin "$bin" --lcm-url 'udpm://239.255.76.67:7697?ttl=0' "$@" >/dev/null 2>"$said"; then
         echo "launch_test: launch $* was not refused" >&2
         exit 1
     fi
@@ -40,6 +40,8 @@ refused "rate" --rate fast --output "$work/out"
 refused "rate" --rate=-3 --output "$work/out"
 refused "speed" --speed -1 --output "$work/out"
 refused "--no-such-flag" --no-such-flag --output "$work/out"
+refused "hears nobody but itself" --lcm-url memq:// --output "$work/out"
+refused "'tll' is not an option of udpm" --lcm-url 'udpm://239.255.76.67:7697?tll=1' --output "$work/out"
 refused "nonsense://" --lcm-url nonsense:// --output "$work/out"
 refused "--no-sensor takes no INPUT" --no-sensor sim:office --output "$work/out"
 refused "--rate" --no-sensor --rate 5 --output "$work/out"

@@ -49,6 +49,31 @@ TEST_F(ProgramsTest, SayTheirVersion) {
     }
 }
 
+TEST_F(ProgramsTest, SayWhenStandardOutputCannotBeWritten) {
+    for (const char* program : kPrograms) {
+        for (const char* flag : {"--version", "--help", "--dump-config"}) {
+            const Outcome outcome = run(program, std::string(flag) + " >/dev/full");
+            EXPECT_EQ(outcome.exit_code, 1) << program << flag;
+            EXPECT_EQ(outcome.err, std::string(program) +
+                                       ": standard output: cannot be written: No space left on device\n")
+                << flag;
+        }
+    }
+}
+
+TEST_F(ProgramsTest, ValuesThatCannotBeMeantAreOneLine) {
+    const std::string to = " --output " + path("out");
+    expect_error("planemap-run", "sim:office --seed -1" + to, "--seed: \"-1\" is no whole number from 0");
+    expect_error("planemap-run", "sim:office --frames ''" + to, "--frames: must not be empty");
+    expect_error("planemap-run", "sim:office --frames 5:2" + to, "frames \"5:2\": no frame lies in it");
+    expect_error("planemap-run", "sim:office -o ''", "--output: must not be empty");
+    expect_error("planemap-run", "'sim:office?frames=3&frames=4'" + to, "frames is given twice");
+    expect_error("planemap-run", "'sim:office?frames=3&rate=-1&units=1'" + to, "rate is -1");
+    for (const char* module : {"segmentation", "odometry", "graph", "octomap"})
+        expect_error("planemap-" + std::string(module), "--lcm-url ''", "--lcm-url: must not be empty");
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
+}
+
 TEST_F(ProgramsTest, DumpTheirOptionsWithTheRightUnits) {
     for (const char* program : kPrograms) {
         const Outcome dumped = run(program, "--dump-config");
@@ -137,6 +162,38 @@ TEST_F(ProgramsTest, EvaluateRefusesWhatCannotBeCompared) {
     expect_error("planemap-evaluate", tum + " " + matrices,
                  "matrices.txt:1: 16 numbers a line: 4 x 4 matrices");
     expect_error("planemap-run", "sim:office --output " + path("out") + " --poses " + kitti, "KITTI");
+}
+
+TEST_F(ProgramsTest, EvaluateSaysWhatIsWrongWithTheFiles) {
+    const std::string pose = " 0 0 0 0 0 0 1\n";
+    write_file(folder_ / "truth.txt", "1" + pose + "2" + pose + "3" + pose);
+    write_file(folder_ / "far.txt", "1" + pose + "2 1e308 0 0 0 0 0 1\n3" + pose);
+    write_file(folder_ / "empty.txt", "# nothing\n");
+    write_file(folder_ / "later.txt", "11" + pose + "12" + pose + "13" + pose);
+    write_file(folder_ / "twice.txt", "1" + pose + "1 5 0 0 0 0 0 1\n2" + pose + "2" + pose + "3" + pose);
+    const std::string truth = path("truth.txt") + " ";
+    expect_error("planemap-evaluate", truth + path("far.txt"), "far.txt:2: tx is 1e+308 m");
+    expect_error("planemap-evaluate", truth + path("empty.txt"), "empty.txt: holds no poses");
+    expect_error("planemap-evaluate", path("empty.txt") + " " + truth, "empty.txt: holds no poses");
+    expect_error("planemap-evaluate", truth + path("later.txt"),
+                 "later.txt covers 11.000 to 13.000 s, the truth " + path("truth.txt") + " 1.000 to 3.000 s");
+    const Outcome twice = run("planemap-evaluate", truth + path("twice.txt"));
+    EXPECT_EQ(twice.exit_code, 0) << twice.err;
+    EXPECT_EQ(twice.err,
+              "planemap-evaluate: " + path("twice.txt") +
+                  ": 1 pose stands there twice, 1 pose says something else than another of the same "
+                  "stamp, of which the last is taken\n");
+}
+
+TEST_F(ProgramsTest, GivenPosesThatFitNothingAreAnError) {
+    const std::string world = "'sim:office?frames=4&width=160&height=120' --no-octomap -q ";
+    write_file(folder_ / "empty.txt", "");
+    expect_error("planemap-run", world + "--output " + path("out") + " --poses " + path("empty.txt"),
+                 "empty.txt: holds no poses");
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
+    write_file(folder_ / "other.txt", "100 0 0 0 0 0 0 1\n200 0 0 0 0 0 0 1\n");
+    expect_error("planemap-run", world + "--output " + path("out") + " --poses " + path("other.txt"),
+                 "other.txt covers 100.000 to 200.000 s, the input 1.000 to 1.100 s");
 }
 
 TEST_F(ProgramsTest, FramesOfEveryInput) {

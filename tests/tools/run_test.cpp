@@ -277,10 +277,12 @@ TEST_F(RunTest, BadInputIsOneClearLine) {
     expect_error("planemap-simulate", "sim:office --output /proc/x/office.lcmlog", "/proc/x");
     expect_error("planemap-map", "--output /proc/nowhere --lcm-url memq://", "/proc/nowhere");
     for (const char* module : {"sensor sim:office", "segmentation", "odometry", "graph", "map", "octomap"}) {
-        for (const char* url : {"nonsense://x", "tcpq://127.0.0.1:port", "udpm://127.0.0.1:7667"}) {
+        for (const char* url : {"nonsense://x", "tcpq://127.0.0.1:port", "udpm://127.0.0.1:7667", "memq://",
+                                "udpm://239.255.76.67:7667?tll=1"}) {
             const std::string name(module, std::strcspn(module, " "));
+            const std::string output = name == "map" ? " --output " + path("map") : "";
             expect_error("planemap-" + name,
-                         std::string(module).substr(name.size()) + " --lcm-url '" + url + "'", url);
+                         std::string(module).substr(name.size()) + output + " --lcm-url '" + url + "'", url);
         }
     }
 }
@@ -372,7 +374,8 @@ TEST_F(RunTest, TheSensorSaysWhatItCannotRead) {
     expect_error("planemap-sensor", path("none") + " -l memq://", "no such folder");
     write_odd_folder(folder_ / "odd");
     std::filesystem::remove_all(folder_ / "odd/my scan");
-    const Result result = run("planemap-sensor", path("odd") + " --speed 0 -l memq://");
+    const Result result =
+        run("planemap-sensor", path("odd") + " --speed 0 -l 'file://" + path("sent.lcmlog") + "?mode=w'");
     EXPECT_EQ(result.exit_code, 1);
     EXPECT_NE(result.err.find("none of the 8 frames could be read"), std::string::npos) << result.err;
 }

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "bench_soak/soak.hpp"
+#include "core/standard_output.hpp"
 
 namespace planemap {
 namespace {
@@ -26,18 +27,19 @@ int run(const Options& options) {
                 options.world.c_str(), round.world_from_camera.size(), options.soak.period_s,
                 bench_soak::table_head().c_str());
     const auto points = bench_soak::soak(round, options.soak, [](const bench_soak::SoakPoint& point) {
-        std::fputs(bench_soak::table_line(point).c_str(), stdout);
-        std::fflush(stdout);
+        print(bench_soak::table_line(point));
         return !stop_requested();
     });
     std::filesystem::remove_all(folder);
     const std::optional<double> growth = bench_soak::growth(points, options.soak.period_s);
     if (!growth) {
         std::puts("memory after the first half hour: not measured, the walk was not longer than that");
+        finish_printing();
         return 0;
     }
     std::printf("memory at the end: %+.1f %% of that after the first half hour (at most %.0f %%): %s\n",
                 100 * *growth, 100 * kMostGrowth, *growth <= kMostGrowth ? "holds" : "DOES NOT HOLD");
+    finish_printing();
     return *growth <= kMostGrowth ? 0 : 1;
 }
 

@@ -8,10 +8,10 @@
 #include <string>
 
 #include "core/files.hpp"
+#include "core/standard_output.hpp"
 #include "core/trajectory_file.hpp"
 #include "evaluate/evaluation.hpp"
 #include "messages/process.hpp"
-#include "results/standard_output.hpp"
 
 namespace planemap {
 namespace {
@@ -49,20 +49,12 @@ void add_flags(Flags& flags, Arguments& arguments) {
                      "of --delta: s seconds, f frames, or m, rad, deg along the estimate");
 }
 
-std::string span_of(const Trajectory& trajectory) {
-    if (trajectory.empty()) return "nothing";
-    char text[80];
-    std::snprintf(text, sizeof(text), "%.3f to %.3f s", static_cast<double>(trajectory.front().utime) * 1e-6,
-                  static_cast<double>(trajectory.back().utime) * 1e-6);
-    return text;
-}
-
 /// Why there is no ATE, in one line.
 std::string too_few_pairs(const Arguments& arguments, const Trajectory& truth, const Trajectory& estimate,
                           std::size_t pairs) {
     if (pairs == 0) {
-        return "no overlap in time: " + arguments.truth_file + " covers " + span_of(truth) + ", " +
-               arguments.estimate_file + " covers " + span_of(estimate) +
+        return "no overlap in time: " + arguments.estimate_file + " covers " + span_text(estimate) +
+               ", the truth " + arguments.truth_file + " " + span_text(truth) +
                " (see --offset and --max-difference)";
     }
     return "only " + std::to_string(pairs) + " poses of " + arguments.estimate_file + " match poses of " +
@@ -134,6 +126,11 @@ struct Pair {
 
 Pair read_pair(const Arguments& arguments) {
     Pair pair{read_trajectory_file(arguments.truth_file), read_trajectory_file(arguments.estimate_file)};
+    require_poses(arguments.truth_file, pair.truth.poses);
+    require_poses(arguments.estimate_file, pair.estimate.poses);
+    for (const TrajectoryFile* file : {&pair.truth, &pair.estimate})
+        for (const std::string& note : file->notes)
+            std::fprintf(stderr, "planemap-evaluate: %s\n", note.c_str());
     pair.by_index = pair.truth.format == TrajectoryFormat::kKitti;
     if (pair.by_index != (pair.estimate.format == TrajectoryFormat::kKitti)) {
         throw std::runtime_error(

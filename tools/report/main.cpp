@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "core/files.hpp"
+#include "core/standard_output.hpp"
 #include "messages/process.hpp"
-#include "results/standard_output.hpp"
 #include "run/report.hpp"
 
 int main(int argc, char** argv) {

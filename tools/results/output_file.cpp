@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "core/files.hpp"
-#include "results/standard_output.hpp"
+#include "core/standard_output.hpp"
 
 namespace planemap {
 

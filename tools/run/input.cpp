@@ -77,7 +77,9 @@ class SensorInput : public Input {
         std::error_code ignored;
         if (!std::filesystem::exists(file, ignored)) return;
         try {
-            truth_ = read_trajectory(file);
+            std::vector<std::string> notes;
+            truth_ = read_trajectory(file, &notes);
+            for (const std::string& note : notes) spdlog::warn("{}", note);
         } catch (const std::runtime_error& error) {
             spdlog::warn("{}; nothing is compared to it", error.what());
         }

@@ -4,7 +4,8 @@
 
 #include <cstdio>
 
-#include "results/standard_output.hpp"
+#include "core/standard_output.hpp"
+#include "core/trajectory_file.hpp"
 #include "run/input.hpp"
 #include "run/interim.hpp"
 #include "run/outputs.hpp"
@@ -80,8 +81,10 @@ std::string map(const RunOptions& options, Input& input, Pipeline& pipeline, Res
 }
 
 /// What is wrong with the results, a line each; the last says what became of them.
-std::vector<std::string> problems_of(const std::string& input_name, const Input& input, Pipeline& pipeline,
+std::vector<std::string> problems_of(const RunOptions& options, const Input& input, Pipeline& pipeline,
                                      const ResultFolder& folder, const Outputs& outputs) {
+    const std::string& input_name = options.input;
+    const GivenPoses* given = pipeline.given_poses();
     std::vector<std::string> lines = outputs.failures;
     const std::string earlier =
         outputs.kept_earlier ? "; " + folder.path().string() + " keeps the results of an earlier run" : "";
@@ -92,6 +95,11 @@ std::vector<std::string> problems_of(const std::string& input_name, const Input&
         lines.push_back("stopped before the first frame of " + input_name + " was mapped" + earlier);
     } else if (pipeline.estimates().empty()) {
         lines.push_back(input_name + ": no frame of it could be used" + earlier);
+    } else if (given != nullptr && given->fit_nothing()) {
+        lines.push_back(options.poses.string() + " covers " + span_text(given->poses()) + ", the input " +
+                        span_text(pipeline.estimates().front().utime, pipeline.estimates().back().utime) +
+                        ": no keyframe has a pose, and nothing is in the map" +
+                        (aside.empty() ? earlier : aside));
     } else if (tracked_frames(pipeline) == 0) {
         lines.push_back(input_name + ": none of its " + std::to_string(input.frames()) +
                         " frames could be tracked: " + pipeline.why_lost() + earlier);
@@ -121,15 +129,23 @@ void warn(const std::vector<std::string>& lines) {
     for (const std::string& line : lines) spdlog::warn("{}", line);
 }
 
+Trajectory read_given_poses(const std::filesystem::path& file) {
+    std::vector<std::string> notes;
+    Trajectory poses = read_trajectory(file, &notes);
+    require_poses(file, poses);
+    warn(notes);
+    return poses;
+}
+
 int run(RunOptions options, const nlohmann::ordered_json& about) {
     if (options.seed) options.pipeline.segmentation.seed = options.pipeline.odometry.seed = *options.seed;
     options.pipeline.with_octomap = !options.no_octomap;
     if (!options.camera.empty()) {
         std::vector<std::string> notes;
         options.pipeline.camera = read_camera_file(options.camera, &notes);
-        for (const std::string& note : notes) spdlog::warn("{}", note);
+        warn(notes);
     }
-    if (!options.poses.empty()) options.pipeline.poses = read_trajectory(options.poses);
+    if (!options.poses.empty()) options.pipeline.poses = read_given_poses(options.poses);
     const FrameRange frames = options.frames.empty() ? FrameRange{} : parse_frame_range(options.frames);
     catch_stop_signals();
 
@@ -142,7 +158,8 @@ int run(RunOptions options, const nlohmann::ordered_json& about) {
     RunClock clock;
     const std::string error = map(options, *input, pipeline, folder);
     clock.stop();
-    if (const GivenPoses* given = pipeline.given_poses(); given != nullptr && given->missing() > 0) {
+    if (const GivenPoses* given = pipeline.given_poses();
+        given != nullptr && given->missing() > 0 && !given->fit_nothing()) {
         spdlog::warn("{}: no pose within 0.1 s of {} keyframes, which are not in the map",
                      options.poses.string(), given->missing());
     }
@@ -152,7 +169,7 @@ int run(RunOptions options, const nlohmann::ordered_json& about) {
     const Outputs outputs = write_outputs(folder, options.input, *input, pipeline, clock, about);
     warn(folder.take_notes());
     if (!outputs.report.is_null()) warn(outputs.report.at("warnings").get<std::vector<std::string>>());
-    std::vector<std::string> problems = problems_of(options.input, *input, pipeline, folder, outputs);
+    std::vector<std::string> problems = problems_of(options, *input, pipeline, folder, outputs);
     for (const std::string& failure : {input->failure(), error})
         if (!failure.empty()) problems.push_back(failure + "; what was mapped until then is kept");
     try {

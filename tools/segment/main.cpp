@@ -2,8 +2,8 @@
 // planemap-segment: depth images to label images and regions.
 #include <cstdio>
 
+#include "core/standard_output.hpp"
 #include "messages/process.hpp"
-#include "results/standard_output.hpp"
 #include "segment/segment_images.hpp"
 #include "segmentation/segmentation_shell.hpp"
 #include "sensor/camera_file.hpp"

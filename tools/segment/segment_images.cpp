@@ -70,13 +70,21 @@ nlohmann::ordered_json measure(Segmenter& segmenter, const DepthImage& depth, co
     return {{"median", at_share(ms, 0.5)}, {"p95", at_share(ms, 0.95)}, {"repeats", repeat}};
 }
 
-DepthImage read_depth(const std::filesystem::path& file, const CameraInfo& camera) {
+DepthImage read_depth(const std::filesystem::path& file, const CameraInfo& camera, bool& end_missing) {
     const std::string bytes = read_file(file);
     try {
-        return decode_depth_png(bytes, camera.depth.width, camera.depth.height);
+        return decode_depth_png(bytes, camera.depth.width, camera.depth.height, &end_missing);
     } catch (const std::runtime_error& error) {
         throw std::runtime_error(file.string() + ": " + error.what());
     }
+}
+
+/// Images that are cut short behind their last pixel, in one line; empty for none.
+std::string ends_missing_text(const std::vector<std::filesystem::path>& images) {
+    if (images.empty()) return {};
+    std::string text = images.front().string() + ": " + kEndMissing;
+    if (images.size() > 1) text += "; and " + std::to_string(images.size() - 1) + " more such images";
+    return text;
 }
 
 /// The names of one image's results.
@@ -146,10 +154,13 @@ SegmentImagesReport segment_images(const SegmentImagesOptions& options, const Ca
     SegmentImagesReport report;
     Progress progress(options.images.size(), options.quiet);
     Segmentation segmentation;
+    std::vector<std::filesystem::path> cut;
     const auto segment_one = [&](const std::filesystem::path& image) {
         const ResultNames names(image);
         refuse_to_overwrite(options.output, names, options.images);
-        const DepthImage depth = read_depth(image, camera);
+        bool end_missing = false;
+        const DepthImage depth = read_depth(image, camera, end_missing);
+        if (end_missing) cut.push_back(image);
         segmenter->segment(depth, camera, segmentation);
         nlohmann::ordered_json json{{"image", image.string()}, {"width", depth.width},
                                     {"height", depth.height},  {"method", options.segmentation.method},
@@ -175,6 +186,7 @@ SegmentImagesReport segment_images(const SegmentImagesOptions& options, const Ca
         }
     }
     report.notes = folder.take_notes();
+    if (const std::string text = ends_missing_text(cut); !text.empty()) report.notes.push_back(text);
     return report;
 }
 

@@ -8,9 +8,9 @@
 #include <stdexcept>
 
 #include "core/files.hpp"
+#include "core/standard_output.hpp"
 #include "messages/process.hpp"
 #include "results/result_folder.hpp"
-#include "results/standard_output.hpp"
 #include "sensor/sensor_shell.hpp"
 #include "simulator/simulated_source.hpp"
 #include "simulate/recording.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "results/standard_output.hpp"
+#include "core/standard_output.hpp"
 
 #include <cerrno>
 #include <cstdio>
