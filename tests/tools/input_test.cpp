@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "core/files.hpp"
-#include "core/temporary_folder.hpp"
+#include "temporary_folder.hpp"
 #include "messages/channels.hpp"
 #include "messages/convert.hpp"
 #include "messages/log.hpp"

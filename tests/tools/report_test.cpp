@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/files.hpp"
-#include "core/temporary_folder.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap {
 namespace {

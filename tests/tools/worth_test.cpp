@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "core/files.hpp"
-#include "core/temporary_folder.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap {
 namespace {
