@@ -59,7 +59,7 @@ TEST(Files, FailureNamesTheFileAndKeepsTheOldOne) {
 }
 
 TEST(Files, AFailureTellsItsKind) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     write_file(folder / "file", "x");
     try {
         write_file(folder / "file" / "below", "x");

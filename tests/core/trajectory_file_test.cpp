@@ -194,7 +194,7 @@ TEST(TrajectoryFile, LinesOfDifferentFormsAreRefused) {
 }
 
 TEST(TrajectoryFile, AbsurdPositionsAreRefusedByLineAndField) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     const std::string good = "1 0 0 0 0 0 0 1\n";
     EXPECT_THAT(error_of(folder, good + "2 0 1e308 0 0 0 0 1\n"),
                 HasSubstr("t.txt:2: ty is 1e+308 m, must be -1e+08 to 1e+08 m"));
@@ -205,7 +205,7 @@ TEST(TrajectoryFile, AbsurdPositionsAreRefusedByLineAndField) {
 }
 
 TEST(TrajectoryFile, QuaternionsThatAreNoRotationAreRefused) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     for (const char* q : {"0 0 0 3", "0 0 0 0", "0 0 0 1.02", "0 0.5 0.5 0.5"}) {
         EXPECT_THAT(
             error_of(folder, "1 0 0 0 0 0 0 1\n2 0 0 0 " + std::string(q) + "\n"),
@@ -215,7 +215,7 @@ TEST(TrajectoryFile, QuaternionsThatAreNoRotationAreRefused) {
 }
 
 TEST(TrajectoryFile, PosesOfOneStampAreCountedInOneLine) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     const std::string first = "1 0 0 0 0 0 0 1\n", moved = "1 2 0 0 0 0 0 1\n", later = "2 0 0 0 0 0 0 1\n";
     EXPECT_TRUE(read_text(folder, first + later).notes.empty());
     EXPECT_THAT(read_text(folder, first + first + later).notes,

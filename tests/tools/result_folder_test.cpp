@@ -224,7 +224,7 @@ TEST(ResultFolder, AFolderThatWentAwayIsMadeAgain) {
 }
 
 TEST(ResultFolder, WhateverIsRemovedASecondRunIsRefused) {
-    const TemporaryFolder parent;
+    const test::TemporaryFolder parent;
     const std::filesystem::path folder = parent / "out";
     ResultFolder first(folder, kNames);
     const auto second = [&] { return error_of([&] { ResultFolder(folder, kNames); }); };
@@ -246,7 +246,7 @@ TEST(ResultFolder, WhateverIsRemovedASecondRunIsRefused) {
 }
 
 TEST(ResultFolder, WhatTookTheFoldersPlaceIsLeftThere) {
-    const TemporaryFolder parent;
+    const test::TemporaryFolder parent;
     const std::filesystem::path folder = parent / "out";
     write_file(parent / "out-2", "no folder");
     std::filesystem::create_directories(parent / "out-3");
