@@ -9,16 +9,24 @@
 
 namespace planemap {
 
+namespace {
+
+[[noreturn]] void fail(int error) {
+    throw std::runtime_error(std::string("standard output: cannot be written") +
+                             (error != 0 ? std::string(": ") + std::strerror(error) : ""));
+}
+
+}  // namespace
+
 void print(std::string_view text) {
-    std::fwrite(text.data(), 1, text.size(), stdout);
+    errno = 0;
+    if (std::fwrite(text.data(), 1, text.size(), stdout) < text.size()) fail(errno);
     finish_printing();
 }
 
 void finish_printing() {
     errno = 0;
-    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return;
-    throw std::runtime_error(std::string("standard output: cannot be written") +
-                             (errno != 0 ? std::string(": ") + std::strerror(errno) : ""));
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) fail(errno);
 }
 
 }  // namespace planemap
