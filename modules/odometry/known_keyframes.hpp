@@ -8,7 +8,7 @@
 #include "core/image.hpp"
 #include "core/keyframe.hpp"
 
-namespace planemap {
+namespace planemap::odometry {
 
 /// A blurred, tiny, brightness-normalised copy of an image, to rank keyframes by likeness.
 std::vector<float> make_thumbnail(const GrayImage& gray);
@@ -40,4 +40,4 @@ class KnownKeyframes {
     std::vector<KnownKeyframe> keyframes_;
 };
 
-}  // namespace planemap
+}  // namespace planemap::odometry

@@ -14,7 +14,7 @@
 #include "odometry/readout.hpp"
 #include "odometry/tracker.hpp"
 
-namespace planemap {
+namespace planemap::odometry {
 namespace {
 
 constexpr double kUsual = 0.01;          // metres and radians by which a prediction is off at any rate
@@ -627,4 +627,4 @@ OdometryResult Odometry::process(const OdometryFrame& frame) {
     return state_->process(frame);
 }
 
-}  // namespace planemap
+}  // namespace planemap::odometry

@@ -7,7 +7,7 @@
 #include "messages/channels.hpp"
 #include "messages/decode.hpp"
 
-namespace planemap {
+namespace planemap::odometry {
 
 namespace {
 
@@ -139,4 +139,4 @@ void OdometryShell::finish() {
     process_ready(0);
 }
 
-}  // namespace planemap
+}  // namespace planemap::odometry

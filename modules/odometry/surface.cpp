@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace planemap {
+namespace planemap::odometry {
 namespace {
 
 constexpr double kSamePlaneAngle = 0.26;  // 15 degrees between a cell and the region it lies on
@@ -167,4 +167,4 @@ SurfaceMatch match_surface(const Surface& surface, const PinholeCamera& camera,
     return match;
 }
 
-}  // namespace planemap
+}  // namespace planemap::odometry

@@ -11,7 +11,7 @@
 #include "core/region.hpp"
 #include "odometry/alignment.hpp"
 
-namespace planemap {
+namespace planemap::odometry {
 
 /// One reading of a depth image.
 struct SurfaceSample {
@@ -65,4 +65,4 @@ SurfaceMatch match_surface(const Surface& surface, const PinholeCamera& camera,
                            const std::vector<SurfaceSample>& samples, const Pose& camera_from_keyframe,
                            double gate_m, double weight);
 
-}  // namespace planemap
+}  // namespace planemap::odometry

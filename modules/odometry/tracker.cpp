@@ -8,7 +8,7 @@
 #include "odometry/features.hpp"
 #include "odometry/ransac.hpp"
 
-namespace planemap {
+namespace planemap::odometry {
 namespace {
 
 constexpr double kPlaneAngle = 0.14;   // 8 degrees between the two views of a plane
@@ -271,4 +271,4 @@ Guess coarse_guess(const OdometryOptions& options, const LocalKeyframe& keyframe
     return better;
 }
 
-}  // namespace planemap
+}  // namespace planemap::odometry

@@ -13,7 +13,7 @@
 #include "odometry/options.hpp"
 #include "odometry/surface.hpp"
 
-namespace planemap {
+namespace planemap::odometry {
 
 /// A frame prepared for tracking.
 struct PreparedFrame {
@@ -106,4 +106,4 @@ QuadraticTerm match_planes(std::span<const PlanarRegion> keyframe_regions,
                            std::span<const PlanarRegion> regions, const Pose& camera_from_keyframe,
                            const DepthNoise& noise, double independent_points);
 
-}  // namespace planemap
+}  // namespace planemap::odometry

@@ -5,7 +5,7 @@
 #include "segmentation/cell_kernels.hpp"
 #include "segmentation/lanes.hpp"
 
-namespace planemap {
+namespace planemap::segmentation {
 namespace {
 
 /// Pixel offsets from a cell's centre: of the columns, and their squares.
@@ -383,4 +383,4 @@ void label(const CellRules& rules, const BorderBand& band, const CellPixels& cel
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::segmentation

@@ -14,7 +14,7 @@
 #include "segmentation/merging.hpp"
 #include "segmentation/shape.hpp"
 
-namespace planemap {
+namespace planemap::segmentation {
 
 namespace {
 
@@ -369,4 +369,4 @@ std::unique_ptr<Segmenter> make_cell_segmenter(const CellOptions& options, const
     return std::make_unique<CellSegmenter>(options, kernels);
 }
 
-}  // namespace planemap
+}  // namespace planemap::segmentation

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace planemap {
+namespace planemap::segmentation {
 
 namespace {
 
@@ -421,4 +421,4 @@ void RegionGrower::keep_large(double min_pixels) {
     for (std::uint16_t& label : label_of_cell_) label = new_label_[label];
 }
 
-}  // namespace planemap
+}  // namespace planemap::segmentation

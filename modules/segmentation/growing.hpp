@@ -13,7 +13,7 @@
 #include "segmentation/merging.hpp"
 #include "segmentation/point_sums.hpp"
 
-namespace planemap {
+namespace planemap::segmentation {
 
 /// A grid of cells, row-major. Refers to the cells.
 struct CellMap {
@@ -110,4 +110,4 @@ class RegionGrower {
     std::vector<InverseDepthPlane> planes_;
 };
 
-}  // namespace planemap
+}  // namespace planemap::segmentation

@@ -10,7 +10,7 @@
 
 #include "room.hpp"
 
-namespace planemap {
+namespace planemap::odometry {
 namespace {
 
 constexpr std::int64_t kPeriod = 33333;  // microseconds
@@ -299,4 +299,4 @@ TEST(OdometryOptions, EveryBadFieldIsNamed) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::odometry

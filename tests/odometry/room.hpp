@@ -12,7 +12,7 @@
 #include "core/image.hpp"
 #include "core/plane.hpp"
 
-namespace planemap {
+namespace planemap::odometry {
 
 struct RenderedFrame {
     GrayImage gray;
@@ -77,4 +77,4 @@ inline RenderedFrame render_room(const CameraInfo& info, const Pose& room_from_c
     return frame;
 }
 
-}  // namespace planemap
+}  // namespace planemap::odometry

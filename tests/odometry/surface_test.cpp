@@ -10,7 +10,7 @@
 
 #include "room.hpp"
 
-namespace planemap {
+namespace planemap::odometry {
 namespace {
 
 TEST(Surface, CellsLieOnThePlanesOfTheRoom) {
@@ -113,4 +113,4 @@ TEST(SamplesTest, AreWhereTheyWereAtTheImagesTime) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::odometry

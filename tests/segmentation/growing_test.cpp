@@ -8,7 +8,7 @@
 #include <functional>
 #include <set>
 
-namespace planemap {
+namespace planemap::segmentation {
 namespace {
 
 constexpr double kCell = 0.02;  // side, normalised coordinates
@@ -159,4 +159,4 @@ TEST(GrowingTest, NothingPlanarOrNoCells) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::segmentation

@@ -13,7 +13,7 @@
 #include "segmentation/scene.hpp"
 #include "segmentation/segmentation.hpp"
 
-namespace planemap {
+namespace planemap::segmentation {
 namespace {
 
 /// A region whose pixels, all exactly on the plane, are those of label 1.
@@ -340,7 +340,7 @@ TEST(ShapeTest, OutlinesDoNotReachBeyondReadings) {
             trial % 4 != 0, static_cast<std::uint64_t>(trial + 1));
         Segmentation segmentation;
         segmenter->segment(depth, camera, segmentation);
-        const test::Reach reach = test::reach_of(segmentation, depth, camera);
+        const Reach reach = reach_of(segmentation, depth, camera);
         EXPECT_LE(reach.worst, 1) << trial;
         vertices += reach.vertices;
         crossing += reach.crossing;
@@ -387,4 +387,4 @@ TEST(DepthRangeTest, UnitsOfAnySize) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::segmentation

@@ -96,9 +96,9 @@ std::string Pipeline::why_lost() {
         const auto found = losses.find(reason);
         return found != losses.end() && 2 * found->second > lost;
     };
-    if (is_most(OdometryShell::kNoReadings))
+    if (is_most(odometry::OdometryShell::kNoReadings))
         return "they have hardly a depth reading that is valid and within the camera's depth_range_m";
-    if (is_most(OdometryShell::kBesideColor))
+    if (is_most(odometry::OdometryShell::kBesideColor))
         return "their depth lies beside the colour image; are camera.json's cameras and color_from_depth "
                "right?";
     return "depth is there, but nothing to follow in it and in the colour image";
