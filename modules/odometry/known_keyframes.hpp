@@ -28,7 +28,6 @@ class KnownKeyframes {
 
     void add(KnownKeyframe keyframe);
     void clear() { keyframes_.clear(); }
-    const std::vector<KnownKeyframe>& all() const { return keyframes_; }
 
     /// The newest keyframe and those most like the image, at most `count`; pointers until the next add().
     std::vector<const KnownKeyframe*> candidates(const GrayImage& gray, int count) const;
