@@ -159,19 +159,27 @@ void to_points(const CellSums& s, const Centres& at, const CellRules& rules, Poi
         out[k] = {n[k], px[k], py[k], z[k], xx[k], xy[k], xz[k], yy[k], yz[k], zz[k]};
 }
 
-/// The planes of eight cells; see Cell.
-struct CellPlanes {
-    Float8 x, y, w, a, b, c, per_steepness;
-    Float8 a_px, b_px;  ///< change of w a pixel
-    Float8 mse;         ///< of w
-    Float8 uu, vv;      ///< variance of the pixels' places, pixels
-    Int8 determined;
-};
+/// The sensor's noise, with the rounding to raw units.
+inline Float8 sigma_at(const Float8& z, const CellRules& rules) {
+    const Float8 off = z - static_cast<float>(rules.noise.offset_m);
+    const Float8 noise = splat(static_cast<float>(rules.noise.base_m)) +
+                         off * off * static_cast<float>(rules.noise.quadratic_per_m);
+    const auto rounding = static_cast<float>(1 / (12 * rules.units_per_metre * rules.units_per_metre));
+    return square_root(noise * noise + rounding);
+}
+
+/// cos(limit + atan(error)): how far a cell's normal, known to within `error`, may lie from its region's.
+inline Float8 widened_cosine(const Float8& error, const CellRules& rules) {
+    const auto cosine = static_cast<float>(std::cos(rules.grow_angle_rad)),
+               sine = static_cast<float>(std::sin(rules.grow_angle_rad));
+    const Float8 sum = (splat(cosine) - error * sine) / square_root(splat(1.0f) + error * error);
+    constexpr float kWidest = 0.17f;  // of about 80 degrees
+    return select(sum > splat(kWidest), sum, splat(kWidest));
+}
 
 /// Least squares of relative depth in each cell: the a, b, c that minimise the sum of (1 - r w)^2 with
 /// r = z / reference and w = 1 + c + a u + b v. All is written in differences to 1, so that nothing cancels.
-inline CellPlanes fit_planes(const CellSums& s, const Centres& at, const CellRules& rules) {
-    CellPlanes p;
+void fit_cells(const CellSums& s, const Centres& at, const CellRules& rules, Cell* out) {
     const Float8 k = splat(1.0f) / s.reference, kk = k * k, one = splat(1.0f);
     const auto weight = [&](Float8 n, Float8 q, Float8 qq) { return n + k * q * 2.0f + kk * qq; };
     const Float8 n = weight(s.n.one, s.q.one, s.qq.one), nu = weight(s.n.u, s.q.u, s.qq.u),
@@ -181,78 +189,46 @@ inline CellPlanes fit_planes(const CellSums& s, const Centres& at, const CellRul
     const Int8 enough = s.n.one >= splat(static_cast<float>(rules.min_pixels));
     const Float8 per_n = one / select(enough, n, one);
     const Float8 mu = nu * per_n, mv = nv * per_n, mr = r * per_n;
-    const Float8 uv = nuv * per_n - mu * mv;
-    p.uu = nuu * per_n - mu * mu, p.vv = nvv * per_n - mv * mv;
+    const Float8 uu = nuu * per_n - mu * mu, uv = nuv * per_n - mu * mv, vv = nvv * per_n - mv * mv;
     const Float8 ur = ru * per_n - mu * mr, vr = rv * per_n - mv * mr;
-    const Float8 determinant = p.uu * p.vv - uv * uv;
-    p.determined = enough & (determinant > splat(1e-3f) * p.uu * p.vv) & (determinant > splat(1e-3f));
-    const Float8 per_determinant = one / select(p.determined, determinant, one);
-    const Float8 slope_u = -(p.vv * ur - uv * vr) * per_determinant,
-                 slope_v = -(p.uu * vr - uv * ur) * per_determinant;
+    const Float8 determinant = uu * vv - uv * uv;
+    const Int8 determined = enough & (determinant > splat(1e-3f) * uu * vv) & (determinant > splat(1e-3f));
+    const Float8 per_determinant = one / select(determined, determinant, one);
+    const Float8 slope_u = -(vv * ur - uv * vr) * per_determinant,
+                 slope_v = -(uu * vr - uv * ur) * per_determinant;
     const Float8 relative_mse = kk * s.qq.one * per_n - mr * mr + slope_u * ur + slope_v * vr;
     const Float8 mse_one = select(relative_mse > splat(0.0f), relative_mse, splat(0.0f));
 
     const auto fx = static_cast<float>(rules.camera.fx), fy = static_cast<float>(rules.camera.fy);
     const Float8 unit = splat(static_cast<float>(rules.units_per_metre)) * k;
-    p.w = (one - mr) * unit, p.mse = mse_one * unit * unit;
-    p.a_px = slope_u * unit, p.b_px = slope_v * unit;
-    p.a = p.a_px * fx, p.b = p.b_px * fy;
-    p.x = to_float(at.x) + mu * (1 / fx), p.y = to_float(at.y) + mv * (1 / fy);
-    p.c = p.w - p.a * p.x - p.b * p.y;
-    p.per_steepness = one / square_root(p.a * p.a + p.b * p.b + p.c * p.c);
-    return p;
-}
+    const Float8 w = (one - mr) * unit, mse = mse_one * unit * unit;
+    const Float8 a_px = slope_u * unit, b_px = slope_v * unit;
+    const Float8 a = a_px * fx, b = b_px * fy;
+    const Float8 x = to_float(at.x) + mu * (1 / fx), y = to_float(at.y) + mv * (1 / fy);
+    const Float8 c = w - a * x - b * y;
+    const Float8 per_steepness = one / square_root(a * a + b * b + c * c);
 
-/// What the growing of regions allows for eight cells; see Cell.
-struct CellLimits {
-    Float8 sigma, reach, cos_limit;
-};
-
-inline CellLimits judge(const CellPlanes& p, const CellRules& rules) {
-    CellLimits limits;
-    const Float8 one = splat(1.0f);
-    // The sensor's noise, with the rounding to raw units.
-    const Float8 z = one / p.w, off = z - static_cast<float>(rules.noise.offset_m);
-    const Float8 noise = splat(static_cast<float>(rules.noise.base_m)) +
-                         off * off * static_cast<float>(rules.noise.quadratic_per_m);
-    const auto rounding = static_cast<float>(1 / (12 * rules.units_per_metre * rules.units_per_metre));
-    const Float8 sigma = square_root(noise * noise + rounding), sigma_w = sigma * p.w * p.w;
+    const Float8 sigma = sigma_at(one / w, rules), sigma_w = sigma * w * w;
     // At a grazing angle an error of the pixel's place becomes one of depth.
     const auto lateral = static_cast<float>(rules.lateral_px * rules.lateral_px);
     const auto planarity = static_cast<float>(rules.planarity_sigmas * rules.planarity_sigmas);
-    const Int8 flat =
-        p.mse <= (sigma_w * sigma_w + (p.a_px * p.a_px + p.b_px * p.b_px) * lateral) * planarity;
-    const Int8 planar = p.determined & flat;
+    const Int8 flat = mse <= (sigma_w * sigma_w + (a_px * a_px + b_px * b_px) * lateral) * planarity;
+    const Int8 planar = determined & flat;
     const Float8 limit_sigmas = sigma * static_cast<float>(rules.grow_sigmas);
     const Float8 limit_m = splat(static_cast<float>(rules.grow_m));
-    const Float8 reach = select(limit_sigmas > limit_m, limit_sigmas, limit_m) * p.w;
-    // cos(limit + atan(error)), where the normal's own error is sigma over the cell's width.
-    const Float8 error = sigma * p.w * (static_cast<float>(rules.camera.fx) / kCellPx);
-    const auto cosine = static_cast<float>(std::cos(rules.grow_angle_rad)),
-               sine = static_cast<float>(std::sin(rules.grow_angle_rad));
-    const Float8 cos_sum = (splat(cosine) - error * sine) / square_root(one + error * error);
-    constexpr float kWidest = 0.17f;  // of about 80 degrees
-    limits.sigma = sigma;
-    limits.reach = select(planar, reach, splat(-1.0f));
-    limits.cos_limit = select(cos_sum > splat(kWidest), cos_sum, splat(kWidest));
-    return limits;
-}
-
-/// Fits eight cells, and writes what is known of each.
-void fit_cells(const CellSums& s, const Centres& at, const CellRules& rules, Cell* out) {
-    const CellPlanes p = fit_planes(s, at, rules);
-    const CellLimits limits = judge(p, rules);
-    const auto fx = static_cast<float>(rules.camera.fx), fy = static_cast<float>(rules.camera.fy);
+    const Float8 reach = select(limit_sigmas > limit_m, limit_sigmas, limit_m) * w;
+    // The normal's own error is sigma over the cell's width.
+    const Float8 cos_limit = widened_cosine(sigma * w * (fx / kCellPx), rules);
     const float fxx = 1 / (fx * fx), fyy = 1 / (fy * fy);
-    Float8 low[8] = {p.x,
-                     p.y,
-                     p.w,
-                     limits.reach,
-                     p.a * p.per_steepness,
-                     p.b * p.per_steepness,
-                     p.c * p.per_steepness,
-                     limits.cos_limit};
-    Float8 high[8] = {p.a, p.b, p.mse, p.uu * fxx, p.vv * fyy, s.n.one, limits.sigma, p.per_steepness};
+    Float8 low[8] = {x,
+                     y,
+                     w,
+                     select(planar, reach, splat(-1.0f)),
+                     a * per_steepness,
+                     b * per_steepness,
+                     c * per_steepness,
+                     cos_limit};
+    Float8 high[8] = {a, b, mse, uu * fxx, vv * fyy, s.n.one, sigma, per_steepness};
     transpose(low);
     transpose(high);
     for (int i = 0; i < 8; ++i) {

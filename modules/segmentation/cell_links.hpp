@@ -17,6 +17,8 @@ class CellLinks {
 
     /// Whether a cell's neighbour k (see CellMap::neighbour_steps) continues it.
     bool linked(int cell, int k) const { return (links_[cell] >> k & 1) != 0; }
+    /// Whether any neighbour does.
+    bool any(int cell) const { return links_[cell] != 0; }
     /// How many neighbours do.
     int count(int cell) const { return std::popcount(links_[cell]); }
     /// 1 - cosine of the angle to the linked neighbour that lies most unlike the cell; 0 without one.

@@ -121,7 +121,7 @@ void RegionGrower::settle_borders(const CellMap& map) {
     const std::array<int, 4> steps = map.neighbour_steps();
     make_targets(result_, targets_);
     for (int i = 0; i < static_cast<int>(map.cells.size()); ++i) {
-        if (links_.count(i) == 0) continue;
+        if (!links_.any(i)) continue;
         const std::uint16_t label = result_.label_of_cell[i];
         float best = -1;
         std::uint16_t best_label = label;

@@ -45,7 +45,7 @@ TEST_F(TrackerTest, PointsAndDepthFindTheMotion) {
 TEST_F(TrackerTest, AFrameAgainstItselfHasNotMoved) {
     const auto track = track_points(options_, keyframe_, first_.frame, loose_guess(), 3);
     ASSERT_TRUE(track);
-    EXPECT_LT(pose_error(track->alignment.camera_from_keyframe, Pose::Identity()), 1e-4);
+    EXPECT_LT(pose_error(track->alignment.camera_from_keyframe, Pose::Identity()), 1e-3);
     EXPECT_GT(track->inliers, 0.9 * static_cast<double>(keyframe_.points.size()));
 }
 
