@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <set>
 
 #include "segmentation/cell_map.hpp"
@@ -56,11 +57,11 @@ TEST(CellLinksTest, LinksAreMutualAndEndAtStepsAndHoles) {
 
 TEST(CellLinksTest, ACreaseIsLinkedAndItsTurnIsKnown) {
     const CellLinks links = links_of(make_map(kColumns, kRows, [](int x, int) {
-        return InverseDepthPlane{x < kColumns / 2 ? 0.2 : -0.2, 0, 0.6};
+        return InverseDepthPlane{x < kColumns / 2 ? 0.05 : -0.05, 0, 0.6};
     }));
     const int beside = 2 * kColumns + kColumns / 2;
     EXPECT_TRUE(links.linked(beside - 1, 0));
-    EXPECT_GT(links.turn(beside), 0.05f);
+    EXPECT_NEAR(static_cast<double>(links.turn(beside)), 1 - std::cos(2 * std::atan(0.05 / 0.6)), 1e-4);
     EXPECT_NEAR(static_cast<double>(links.turn(beside + 2)), 0, 1e-5);
 }
 
