@@ -9,6 +9,7 @@
 #include <random>
 #include <vector>
 
+#include "core/trace.hpp"
 #include "segmentation/outline_reach.hpp"
 #include "segmentation/scene.hpp"
 #include "segmentation/segmentation.hpp"
@@ -234,7 +235,7 @@ TEST(ShapeTest, OutlinesHoldTheVeryBlocksThatTraceDoes) {
                     if (labels(u, v) == r + 1) mask.set(u, v), ++blocks;
                 }
             }
-            const Outline expected = trace(mask), outline = traced.in_blocks(r, 1);
+            const Outline expected = test::trace(mask), outline = traced.in_blocks(r, 1);
             fill(outline, filled);
             EXPECT_EQ(filled.cells, mask.cells) << trial;
             ASSERT_EQ(outline.rings.size(), expected.rings.size()) << trial;
