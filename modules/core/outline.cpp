@@ -2,7 +2,6 @@
 #include "core/outline.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -148,63 +147,6 @@ Outline simplified(const Outline& outline, double tolerance) {
     return result;
 }
 
-Outline trace(const Mask& mask) {
-    // Each set cell contributes directed edges counter-clockwise around it where its neighbour is not set. An
-    // edge is named by its start corner and direction (0: +x, 1: +y, 2: -x, 3: -y); following them gives the
-    // rings.
-    const int corners_wide = mask.width + 1;
-    const auto corner = [&](int x, int y) {
-        return static_cast<std::size_t>(y) * static_cast<std::size_t>(corners_wide) +
-               static_cast<std::size_t>(x);
-    };
-    std::vector<std::uint8_t> edges(corner(0, mask.height + 1), 0);
-    for (int y = 0; y < mask.height; ++y) {
-        for (int x = 0; x < mask.width; ++x) {
-            if (!mask.at(x, y)) continue;
-            if (!mask.at(x, y - 1)) edges[corner(x, y)] |= 1;
-            if (!mask.at(x + 1, y)) edges[corner(x + 1, y)] |= 2;
-            if (!mask.at(x, y + 1)) edges[corner(x + 1, y + 1)] |= 4;
-            if (!mask.at(x - 1, y)) edges[corner(x, y + 1)] |= 8;
-        }
-    }
-    constexpr std::array<int, 4> dx{1, 0, -1, 0}, dy{0, 1, 0, -1};
-    Outline outline;
-    for (int y = 0; y <= mask.height; ++y) {
-        for (int x = 0; x <= mask.width; ++x) {
-            while (edges[corner(x, y)] != 0) {
-                Ring ring;
-                int cx = x, cy = y, previous = -1;
-                int direction = 0;
-                while ((edges[corner(cx, cy)] >> direction & 1) == 0) ++direction;
-                const int first = direction;
-                do {
-                    edges[corner(cx, cy)] =
-                        static_cast<std::uint8_t>(edges[corner(cx, cy)] & ~(1 << direction));
-                    if (direction != previous) ring.emplace_back(cx, cy);
-                    previous = direction;
-                    cx += dx[static_cast<std::size_t>(direction)];
-                    cy += dy[static_cast<std::size_t>(direction)];
-                    // Turn left where two rings meet at a corner: cells that touch there stay apart.
-                    const std::uint8_t here = edges[corner(cx, cy)];
-                    const int left = (direction + 1) % 4, right = (direction + 3) % 4;
-                    if (here >> left & 1) {
-                        direction = left;
-                    } else if (here >> direction & 1) {
-                        // straight on
-                    } else if (here >> right & 1) {
-                        direction = right;
-                    } else {
-                        break;
-                    }
-                } while (true);
-                if (previous == first && ring.size() > 1) ring.erase(ring.begin());
-                outline.rings.push_back(std::move(ring));
-            }
-        }
-    }
-    return outline;
-}
-
 void fill(const Outline& outline, Mask& mask) {
     std::vector<double> crossings;
     for (int y = 0; y < mask.height; ++y) {
@@ -226,28 +168,6 @@ void fill(const Outline& outline, Mask& mask) {
                 mask.set(x, y);
         }
     }
-}
-
-Ring convex_hull(std::span<const Eigen::Vector2d> points) {
-    std::vector<Eigen::Vector2d> sorted(points.begin(), points.end());
-    const auto less = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-        return std::pair(a.x(), a.y()) < std::pair(b.x(), b.y());
-    };
-    std::sort(sorted.begin(), sorted.end(), less);
-    sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
-    if (sorted.size() < 3) return {};
-    Ring hull;  // Andrew's monotone chain: lower hull, then upper
-    const auto extend = [&](const Eigen::Vector2d& p, std::size_t keep) {
-        while (hull.size() > keep && cross(hull.back() - hull[hull.size() - 2], p - hull.back()) <= 0)
-            hull.pop_back();
-        hull.push_back(p);
-    };
-    for (const auto& p : sorted) extend(p, 1);
-    const std::size_t lower = hull.size();
-    for (std::size_t i = sorted.size() - 1; i-- > 0;) extend(sorted[i], lower);
-    hull.pop_back();
-    if (hull.size() < 3) return {};
-    return hull;
 }
 
 }  // namespace planemap

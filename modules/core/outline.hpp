@@ -3,7 +3,6 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <span>
 #include <utility>
 #include <vector>
 
@@ -71,17 +70,8 @@ struct Mask {
     void set(int x, int y) { cells[index(x, y)] = 1; }
 };
 
-/// The boundary of the set cells as rings in cell-corner coordinates: cell (x, y) is the square [x, x+1] x
-/// [y, y+1]. Outer rings are counter-clockwise (in a frame with x right and y up), holes clockwise; cells
-/// that touch at a corner only are separate parts. Collinear vertices are left out.
-Outline trace(const Mask& mask);
-
 /// Sets every cell of the mask whose centre lies inside the outline (given in cell-corner coordinates).
 /// Parts outside the mask are clipped.
 void fill(const Outline& outline, Mask& mask);
-
-/// The convex hull, counter-clockwise, without collinear vertices; empty for fewer than three distinct
-/// points.
-Ring convex_hull(std::span<const Eigen::Vector2d> points);
 
 }  // namespace planemap

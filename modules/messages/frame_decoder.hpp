@@ -34,7 +34,6 @@ class Frame {
     std::int64_t utime() const { return images_.utime; }  ///< of the depth image, microseconds
     std::int64_t color_utime() const;                     ///< of the colour image; 0 without colour
     const CameraInfo& camera() const { return *camera_; }
-    bool has_color() const { return color_ != nullptr; }
     /// The sender's count of frames, if it sent one.
     std::optional<std::uint32_t> seq() const;
 

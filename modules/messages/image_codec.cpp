@@ -39,8 +39,9 @@ Turbo& decompressor() {
     throw MessageError("JPEG: " + reason);
 }
 
-void decode_into(std::span<const std::uint8_t> jpeg, int width, int height, int pixel_format,
-                 std::uint8_t* out) {
+}  // namespace
+
+GrayImage decode_jpeg_luma(std::span<const std::uint8_t> jpeg, int width, int height) {
     Turbo& handle = decompressor();
     int w = 0, h = 0, subsampling = 0, colorspace = 0;
     if (tjDecompressHeader3(handle.get(), jpeg.data(), jpeg.size(), &w, &h, &subsampling, &colorspace) != 0) {
@@ -53,23 +54,11 @@ void decode_into(std::span<const std::uint8_t> jpeg, int width, int height, int 
     // Accurate transforms, so that luma is the same whatever decodes it; a warning (cut short, corrupt) is an
     // error.
     const int flags = TJFLAG_ACCURATEDCT | TJFLAG_STOPONWARNING;
-    if (tjDecompress2(handle.get(), jpeg.data(), jpeg.size(), out, width, 0, height, pixel_format, flags) !=
-        0) {
+    GrayImage image(width, height);
+    if (tjDecompress2(handle.get(), jpeg.data(), jpeg.size(), image.pixels.data(), width, 0, height,
+                      TJPF_GRAY, flags) != 0) {
         fail(handle);
     }
-}
-
-}  // namespace
-
-GrayImage decode_jpeg_luma(std::span<const std::uint8_t> jpeg, int width, int height) {
-    GrayImage image(width, height);
-    decode_into(jpeg, width, height, TJPF_GRAY, image.pixels.data());
-    return image;
-}
-
-RgbImage decode_jpeg(std::span<const std::uint8_t> jpeg, int width, int height) {
-    RgbImage image(width, height);
-    decode_into(jpeg, width, height, TJPF_RGB, &image.pixels.data()->r);
     return image;
 }
 

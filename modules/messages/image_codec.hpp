@@ -15,8 +15,6 @@ namespace planemap {
 
 /// Luma of a JPEG, which costs a fraction of its colours.
 GrayImage decode_jpeg_luma(std::span<const std::uint8_t> jpeg, int width, int height);
-/// All of a JPEG's colours.
-RgbImage decode_jpeg(std::span<const std::uint8_t> jpeg, int width, int height);
 /// quality: 1 to 100.
 std::vector<std::uint8_t> encode_jpeg(const RgbImage& image, int quality);
 

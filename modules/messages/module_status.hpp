@@ -68,7 +68,6 @@ class ModuleStatus {
     const std::string& module() const { return module_; }
     /// The remarks as they are shown.
     std::vector<std::string> remarks() const;
-    std::int64_t received_count() const { return received_; }
     std::int64_t dropped_count() const { return dropped_; }
     std::int64_t decode_error_count() const { return decode_errors_; }
     /// What was lost since the start, by its reason.

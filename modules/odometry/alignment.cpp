@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace planemap {
+namespace planemap::odometry {
 namespace {
 
 constexpr double kNearest = 0.05;  // metres; nothing nearer to the camera is measured
@@ -152,4 +152,4 @@ AlignmentResult align(const Alignment& a, const Pose& initial, int max_iteration
     return result;
 }
 
-}  // namespace planemap
+}  // namespace planemap::odometry

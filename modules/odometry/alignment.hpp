@@ -7,7 +7,7 @@
 
 #include "core/camera.hpp"
 
-namespace planemap {
+namespace planemap::odometry {
 
 /// A keyframe's point seen in the current image.
 struct PointTerm {
@@ -69,4 +69,4 @@ inline double row_share(const PinholeCamera& camera, double v) {
     return (v + 0.5) / camera.height - 0.5;
 }
 
-}  // namespace planemap
+}  // namespace planemap::odometry

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace planemap {
+namespace planemap::odometry {
 namespace {
 
 constexpr int kFinest = 3, kCoarsest = 4;
@@ -91,4 +91,4 @@ QuadraticTerm photometric_term(const DenseLevel& reference, const FlowPyramid& p
     return term;
 }
 
-}  // namespace planemap
+}  // namespace planemap::odometry

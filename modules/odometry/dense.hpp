@@ -9,7 +9,7 @@
 #include "odometry/alignment.hpp"
 #include "odometry/flow.hpp"
 
-namespace planemap {
+namespace planemap::odometry {
 
 /// Pixels of a coarse pyramid level with gradient and depth.
 struct DenseLevel {
@@ -34,4 +34,4 @@ DenseReference make_dense_reference(const FlowPyramid& pyramid, const DepthImage
 QuadraticTerm photometric_term(const DenseLevel& reference, const FlowPyramid& pyramid,
                                const PinholeCamera& camera, const Pose& camera_from_reference);
 
-}  // namespace planemap
+}  // namespace planemap::odometry

@@ -9,7 +9,7 @@
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
 
-namespace planemap {
+namespace planemap::odometry {
 namespace {
 
 constexpr double kOutlineMargin = 0.02;  // metres
@@ -178,4 +178,4 @@ std::vector<std::pair<int, int>> match_descriptors(std::span<const Feature> a, s
     return matches;
 }
 
-}  // namespace planemap
+}  // namespace planemap::odometry

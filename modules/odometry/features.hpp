@@ -10,7 +10,7 @@
 #include "core/image.hpp"
 #include "core/keyframe.hpp"
 
-namespace planemap {
+namespace planemap::odometry {
 
 /// The image as OpenCV sees it, without a copy; valid while the image lives. OpenCV does not write to it.
 cv::Mat as_mat(const GrayImage& gray);
@@ -52,4 +52,4 @@ int bit_difference(const Descriptor& a, const Descriptor& b);
 std::vector<std::pair<int, int>> match_descriptors(std::span<const Feature> a, std::span<const Feature> b,
                                                    int max_distance);
 
-}  // namespace planemap
+}  // namespace planemap::odometry

@@ -6,7 +6,7 @@
 
 #include "odometry/features.hpp"
 
-namespace planemap {
+namespace planemap::odometry {
 namespace {
 
 /// Grey levels around a pixel, between pixels by bilinear interpolation, without their mean.
@@ -83,4 +83,4 @@ std::vector<char> track_flow(const FlowPyramid& from, const FlowPyramid& to,
     return found;
 }
 
-}  // namespace planemap
+}  // namespace planemap::odometry

@@ -6,7 +6,7 @@
 
 #include "core/image.hpp"
 
-namespace planemap {
+namespace planemap::odometry {
 
 /// The image pyramid that tracking starts from or ends in.
 struct FlowPyramid {
@@ -32,4 +32,4 @@ std::vector<char> track_flow(const FlowPyramid& from, const FlowPyramid& to,
                              const std::vector<cv::Point2f>& from_pixels, std::vector<cv::Point2f>& to_pixels,
                              int window_px, int levels, int iterations);
 
-}  // namespace planemap
+}  // namespace planemap::odometry

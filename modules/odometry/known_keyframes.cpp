@@ -9,7 +9,7 @@
 
 #include "odometry/features.hpp"
 
-namespace planemap {
+namespace planemap::odometry {
 namespace {
 
 constexpr int kThumbnailWidth = 40, kThumbnailHeight = 30;
@@ -74,4 +74,4 @@ std::vector<const KnownKeyframe*> KnownKeyframes::candidates(const GrayImage& gr
     return best;
 }
 
-}  // namespace planemap
+}  // namespace planemap::odometry

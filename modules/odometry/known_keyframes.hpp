@@ -8,7 +8,7 @@
 #include "core/image.hpp"
 #include "core/keyframe.hpp"
 
-namespace planemap {
+namespace planemap::odometry {
 
 /// A blurred, tiny, brightness-normalised copy of an image, to rank keyframes by likeness.
 std::vector<float> make_thumbnail(const GrayImage& gray);
@@ -28,7 +28,6 @@ class KnownKeyframes {
 
     void add(KnownKeyframe keyframe);
     void clear() { keyframes_.clear(); }
-    const std::vector<KnownKeyframe>& all() const { return keyframes_; }
 
     /// The newest keyframe and those most like the image, at most `count`; pointers until the next add().
     std::vector<const KnownKeyframe*> candidates(const GrayImage& gray, int count) const;
@@ -40,4 +39,4 @@ class KnownKeyframes {
     std::vector<KnownKeyframe> keyframes_;
 };
 
-}  // namespace planemap
+}  // namespace planemap::odometry

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace planemap {
+namespace planemap::odometry {
 namespace {
 
 constexpr double kLeastLogIndex = -3, kMostLogIndex = 4;  // alpha 0.2 to 1
@@ -74,4 +74,4 @@ Pose MotionFilter::update(const Pose& odom_from_camera, double elapsed_s) {
     return odom_from_camera_;
 }
 
-}  // namespace planemap
+}  // namespace planemap::odometry

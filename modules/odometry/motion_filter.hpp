@@ -4,7 +4,7 @@
 
 #include "core/pose.hpp"
 
-namespace planemap {
+namespace planemap::odometry {
 
 /// A constant-velocity filter (alpha-beta) whose gains follow the data.
 ///
@@ -55,4 +55,4 @@ class MotionFilter {
     Part translation_, rotation_;
 };
 
-}  // namespace planemap
+}  // namespace planemap::odometry

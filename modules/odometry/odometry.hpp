@@ -11,7 +11,7 @@
 #include "core/keyframe.hpp"
 #include "odometry/options.hpp"
 
-namespace planemap {
+namespace planemap::odometry {
 
 /// One RGB-D frame; everything is viewed, not owned, and only during process().
 struct OdometryFrame {
@@ -54,4 +54,4 @@ class Odometry {
     std::unique_ptr<State> state_;
 };
 
-}  // namespace planemap
+}  // namespace planemap::odometry

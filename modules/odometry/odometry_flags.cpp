@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "odometry/odometry_shell.hpp"
 
-namespace planemap {
+namespace planemap::odometry {
 
 void add_flags(Flags& flags, OdometryOptions& options, const std::string& prefix) {
     flags.section("Odometry", prefix);
@@ -57,4 +57,4 @@ void add_flags(Flags& flags, OdometryOptions& options, const std::string& prefix
     flags.add("seed", options.seed, "of RANSAC");
 }
 
-}  // namespace planemap
+}  // namespace planemap::odometry

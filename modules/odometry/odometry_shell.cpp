@@ -8,7 +8,7 @@
 #include "messages/decode.hpp"
 #include "messages/keyframe_watch.hpp"
 
-namespace planemap {
+namespace planemap::odometry {
 
 namespace {
 
@@ -143,4 +143,4 @@ void OdometryShell::finish() {
     process_ready(0);
 }
 
-}  // namespace planemap
+}  // namespace planemap::odometry

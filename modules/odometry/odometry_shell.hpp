@@ -10,7 +10,7 @@
 #include "messages/process.hpp"
 #include "odometry/odometry.hpp"
 
-namespace planemap {
+namespace planemap::odometry {
 
 /// OPENNI_FRAME and PLANEMAP_REGIONS of the same utime to PLANEMAP_ODOMETRY, POSE_BODY and PLANEMAP_KEYFRAME.
 /// A frame waits for its regions until a later one's come, kMaxWaiting frames wait, or it has waited for
@@ -62,4 +62,4 @@ class OdometryShell : public Shell {
 /// Flags for the options, each named --<prefix>NAME.
 void add_flags(Flags& flags, OdometryOptions& options, const std::string& prefix = "");
 
-}  // namespace planemap
+}  // namespace planemap::odometry

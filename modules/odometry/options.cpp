@@ -3,7 +3,7 @@
 
 #include "core/validation.hpp"
 
-namespace planemap {
+namespace planemap::odometry {
 
 void OdometryOptions::validate() const {
     FieldErrors errors("OdometryOptions");
@@ -48,4 +48,4 @@ void OdometryOptions::validate() const {
     errors.throw_if_any();
 }
 
-}  // namespace planemap
+}  // namespace planemap::odometry

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-namespace planemap {
+namespace planemap::odometry {
 
 /// Options of Odometry. Lengths in metres and angles in radians unless a suffix says otherwise.
 struct OdometryOptions {
@@ -59,4 +59,4 @@ struct OdometryOptions {
     void validate() const;
 };
 
-}  // namespace planemap
+}  // namespace planemap::odometry

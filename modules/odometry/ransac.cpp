@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-namespace planemap {
+namespace planemap::odometry {
 namespace {
 
 struct Pair {
@@ -83,4 +83,4 @@ std::optional<Pose> ransac_motion(const PinholeCamera& camera, std::span<const P
     return best;
 }
 
-}  // namespace planemap
+}  // namespace planemap::odometry

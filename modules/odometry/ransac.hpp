@@ -7,7 +7,7 @@
 
 #include "odometry/alignment.hpp"
 
-namespace planemap {
+namespace planemap::odometry {
 
 struct MotionRansacOptions {
     int max_iterations = 200;
@@ -23,4 +23,4 @@ struct MotionRansacOptions {
 std::optional<Pose> ransac_motion(const PinholeCamera& camera, std::span<const PointTerm> points,
                                   const MotionRansacOptions& options);
 
-}  // namespace planemap
+}  // namespace planemap::odometry

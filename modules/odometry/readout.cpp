@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace planemap {
+namespace planemap::odometry {
 namespace {
 
 constexpr double kLongest = 0.05;  // seconds; no camera of 20 frames a second or more takes longer
@@ -21,4 +21,4 @@ void Readout::learn(double used_s, const AlignmentResult& result) {
     moment_ += result.readout_information * used_s - result.readout_gradient;
 }
 
-}  // namespace planemap
+}  // namespace planemap::odometry

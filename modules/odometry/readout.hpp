@@ -3,7 +3,7 @@
 
 #include "odometry/alignment.hpp"
 
-namespace planemap {
+namespace planemap::odometry {
 
 /// How long the camera takes to read an image out, learnt from what it sees while it moves: with a rolling
 /// shutter the rows of an image are seen one after the other, and a turning camera sees straight things bent.
@@ -21,4 +21,4 @@ class Readout {
     double information_ = 1 / (kSigma * kSigma), moment_ = 0;
 };
 
-}  // namespace planemap
+}  // namespace planemap::odometry

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "odometry/tracker.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -8,7 +9,7 @@
 #include "odometry/features.hpp"
 #include "odometry/ransac.hpp"
 
-namespace planemap {
+namespace planemap::odometry {
 namespace {
 
 constexpr double kPlaneAngle = 0.14;   // 8 degrees between the two views of a plane
@@ -21,11 +22,11 @@ constexpr double kWeakDirection = 4;  // information of the data over the guess'
 
 /// The points that flow found, as terms; depth is read where the point was at the depth image's time.
 std::vector<PointTerm> make_terms(const OdometryOptions& options, const LocalKeyframe& keyframe,
-                                  const PreparedFrame& view, const Guess& guess,
+                                  const PreparedFrame& frame, const Guess& guess,
                                   const std::vector<cv::Point2f>& pixels,
                                   const std::vector<std::size_t>& found) {
-    const PinholeCamera& camera = view.camera->color;
-    const Pose color_from_depth_time = pose_from_twist(view.color_offset_s * guess.velocity);
+    const PinholeCamera& camera = frame.camera->color;
+    const Pose color_from_depth_time = pose_from_twist(frame.color_offset_s * guess.velocity);
     std::vector<PointTerm> terms;
     terms.reserve(found.size());
     for (const std::size_t i : found) {
@@ -38,9 +39,9 @@ std::vector<PointTerm> make_terms(const OdometryOptions& options, const LocalKey
         const Eigen::Vector3d p = guess.camera_from_keyframe * term.point;
         const Eigen::Vector3d p_color = color_from_depth_time * p;
         if (p.z() > 0.05 && p_color.z() > 0.05) depth_pixel += camera.project(p) - camera.project(p_color);
-        const double z = sound_depth(*view.depth, *view.camera, depth_pixel, options.max_depth_spread);
+        const double z = sound_depth(*frame.depth, *frame.camera, depth_pixel, options.max_depth_spread);
         if (z > 0) {
-            const double sigma = options.depth_sigma_scale * view.camera->noise.sigma(z) / (z * z);
+            const double sigma = options.depth_sigma_scale * frame.camera->noise.sigma(z) / (z * z);
             term.inverse_depth = 1 / z;
             term.inverse_depth_sigma = std::hypot(sigma, keyframe.points[i].inverse_depth_sigma);
         }
@@ -66,13 +67,13 @@ bool is_degenerate(const Matrix6d& information, const Guess& guess) {
     return !(eigen.eigenvalues()(0) > kWeakDirection);
 }
 
-Alignment make_alignment(const OdometryOptions& options, const PreparedFrame& view, const Guess& guess) {
+Alignment make_alignment(const OdometryOptions& options, const PreparedFrame& frame, const Guess& guess) {
     Alignment alignment;
-    alignment.camera = view.camera->color;
+    alignment.camera = frame.camera->color;
     alignment.velocity = guess.velocity;
-    alignment.color_offset_s = view.color_offset_s;
+    alignment.color_offset_s = frame.color_offset_s;
     alignment.color_offset_sigma_s = options.color_jitter_s;
-    alignment.readout_s = view.readout_s;
+    alignment.readout_s = frame.readout_s;
     alignment.loss_scale = options.loss_scale;
     alignment.inlier_sigmas = options.inlier_sigmas;
     alignment.quadratics.push_back(guess_term(guess));
@@ -99,17 +100,17 @@ AlignmentResult align_robustly(const OdometryOptions& options, const Alignment& 
 }
 
 std::vector<QuadraticTerm> geometry_terms(const OdometryOptions& options, const LocalKeyframe& keyframe,
-                                          const PreparedFrame& view, const Pose& camera_from_keyframe,
+                                          const PreparedFrame& frame, const Pose& camera_from_keyframe,
                                           const Twist& velocity) {
     std::vector<QuadraticTerm> terms;
     if (options.surface_weight > 0)
-        terms.push_back(match_surface(keyframe.surface, view.camera->color,
-                                      without_shutter(view.samples, view.readout_s * velocity),
+        terms.push_back(match_patches(keyframe.patches, frame.camera->color,
+                                      without_shutter(frame.samples, frame.readout_s * velocity),
                                       camera_from_keyframe, options.surface_gate_m, options.surface_weight)
                             .term);
     if (options.plane_points > 0)
-        terms.push_back(match_planes(keyframe.regions, view.regions, camera_from_keyframe, view.camera->noise,
-                                     options.plane_points));
+        terms.push_back(match_planes(keyframe.regions, frame.regions, camera_from_keyframe,
+                                     frame.camera->noise, options.plane_points));
     return terms;
 }
 
@@ -118,6 +119,10 @@ std::vector<QuadraticTerm> geometry_terms(const OdometryOptions& options, const 
 Twist Guess::velocity_at(const Pose& camera_from_keyframe) const {
     return velocity + velocity_gain.cwiseProduct(
                           twist_from_pose(camera_from_keyframe * predicted_from_keyframe.inverse()));
+}
+
+Matrix6d Located::covariance() const {
+    return track.alignment.information.ldlt().solve(Matrix6d::Identity());
 }
 
 QuadraticTerm match_planes(std::span<const PlanarRegion> keyframe_regions,
@@ -155,22 +160,25 @@ QuadraticTerm match_planes(std::span<const PlanarRegion> keyframe_regions,
     return term;
 }
 
+namespace {
+
+/// The pose from points that are already found: `pixels` of the keyframe's points with `found` set.
 std::optional<Track> align_points(const OdometryOptions& options, const LocalKeyframe& keyframe,
-                                  const PreparedFrame& view, const Guess& guess,
+                                  const PreparedFrame& frame, const Guess& guess,
                                   std::vector<cv::Point2f> pixels, const std::vector<char>& found) {
     std::vector<std::size_t> indices;
     for (std::size_t i = 0; i < found.size(); ++i)
         if (found[i]) indices.push_back(i);
     if (static_cast<int>(indices.size()) < options.min_inliers) return std::nullopt;
-    const std::vector<PointTerm> terms = make_terms(options, keyframe, view, guess, pixels, indices);
-    Alignment alignment = make_alignment(options, view, guess);
+    const std::vector<PointTerm> terms = make_terms(options, keyframe, frame, guess, pixels, indices);
+    Alignment alignment = make_alignment(options, frame, guess);
     alignment.points = terms;
     AlignmentResult result = align_robustly(options, alignment, guess);
     if (!is_supported(options, result, terms.size())) return std::nullopt;
 
     alignment.velocity = guess.velocity_at(result.camera_from_keyframe);
     const std::vector<QuadraticTerm> geometry =
-        geometry_terms(options, keyframe, view, result.camera_from_keyframe, alignment.velocity);
+        geometry_terms(options, keyframe, frame, result.camera_from_keyframe, alignment.velocity);
     alignment.quadratics.insert(alignment.quadratics.end(), geometry.begin(), geometry.end());
     const AlignmentResult joint = align(alignment, result.camera_from_keyframe);
     if (is_supported(options, joint, terms.size()) && joint.inliers > 0.8 * result.inliers) result = joint;
@@ -187,12 +195,14 @@ std::optional<Track> align_points(const OdometryOptions& options, const LocalKey
     return track;
 }
 
+}  // namespace
+
 std::optional<Track> track_points(const OdometryOptions& options, const LocalKeyframe& keyframe,
-                                  const PreparedFrame& view, const Guess& guess, const FlowSearch& search) {
-    if (view.pyramid.empty() || search.from->empty()) return std::nullopt;
+                                  const PreparedFrame& frame, const Guess& guess, const FlowSearch& search) {
+    if (frame.pyramid.empty() || search.from->empty()) return std::nullopt;
     const Pose color_from_keyframe =
-        pose_from_twist(view.color_offset_s * guess.velocity) * guess.camera_from_keyframe;
-    const PinholeCamera& camera = view.camera->color;
+        pose_from_twist(frame.color_offset_s * guess.velocity) * guess.camera_from_keyframe;
+    const PinholeCamera& camera = frame.camera->color;
     std::vector<std::size_t> indices;
     std::vector<cv::Point2f> from, to;
     for (std::size_t i = 0; i < keyframe.points.size(); ++i) {
@@ -205,33 +215,40 @@ std::optional<Track> track_points(const OdometryOptions& options, const LocalKey
         from.push_back((*search.from_pixels)[i]);
         to.emplace_back(static_cast<float>(pixel.x()), static_cast<float>(pixel.y()));
     }
-    const std::vector<char> found_here = track_flow(
-        *search.from, view.pyramid, from, to, options.flow_window_px, search.levels, options.flow_iterations);
+    const std::vector<char> found_here =
+        track_flow(*search.from, frame.pyramid, from, to, options.flow_window_px, search.levels,
+                   options.flow_iterations);
     std::vector<cv::Point2f> pixels(keyframe.points.size());
     std::vector<char> found(keyframe.points.size(), 0);
     for (std::size_t i = 0; i < indices.size(); ++i) {
         pixels[indices[i]] = to[i];
         found[indices[i]] = found_here[i];
     }
-    return align_points(options, keyframe, view, guess, std::move(pixels), found);
+    return align_points(options, keyframe, frame, guess, std::move(pixels), found);
+}
+
+std::optional<Track> track_points(const OdometryOptions& options, const LocalKeyframe& keyframe,
+                                  const PreparedFrame& frame, const Guess& guess, int levels) {
+    const std::vector<cv::Point2f> pixels = keyframe.pixels();
+    return track_points(options, keyframe, frame, guess, {&keyframe.pyramid, &pixels, nullptr, levels});
 }
 
 std::optional<Track> track_surface(const OdometryOptions& options, const LocalKeyframe& keyframe,
-                                   const PreparedFrame& view, const Guess& guess) {
-    if (view.samples.empty() || keyframe.surface.cells() == 0) return std::nullopt;
+                                   const PreparedFrame& frame, const Guess& guess) {
+    if (frame.samples.empty() || keyframe.patches.cells() == 0) return std::nullopt;
     Track track;
     Pose pose = guess.camera_from_keyframe;
-    SurfaceMatch match;
+    PatchMatch match;
     for (int i = 0; i < 2 * kSurfaceSteps; ++i) {
         // Wide at first, then as narrow as the noise allows.
         const double gate = options.surface_gate_m * (i < kSurfaceSteps ? 3 : 1);
-        match = match_surface(keyframe.surface, view.camera->color,
-                              without_shutter(view.samples, view.readout_s * guess.velocity_at(pose)), pose,
+        match = match_patches(keyframe.patches, frame.camera->color,
+                              without_shutter(frame.samples, frame.readout_s * guess.velocity_at(pose)), pose,
                               gate, options.surface_weight);
-        Alignment alignment = make_alignment(options, view, guess);
+        Alignment alignment = make_alignment(options, frame, guess);
         alignment.quadratics.push_back(match.term);
         alignment.quadratics.push_back(
-            match_planes(keyframe.regions, view.regions, pose, view.camera->noise, options.plane_points));
+            match_planes(keyframe.regions, frame.regions, pose, frame.camera->noise, options.plane_points));
         track.alignment = align(alignment, pose);
         if (!track.alignment.converged) return std::nullopt;
         const Twist step = twist_from_pose(track.alignment.camera_from_keyframe * pose.inverse());
@@ -240,7 +257,7 @@ std::optional<Track> track_surface(const OdometryOptions& options, const LocalKe
         if (i >= kSurfaceSteps) break;
         i = kSurfaceSteps - 1;
     }
-    const double needed = options.min_surface_share * static_cast<double>(view.samples.size());
+    const double needed = options.min_surface_share * static_cast<double>(frame.samples.size());
     if (match.matched < needed || match.matched < 0.7 * match.visible) return std::nullopt;
     track.tried = match.visible;
     track.inliers = match.matched;
@@ -248,18 +265,18 @@ std::optional<Track> track_surface(const OdometryOptions& options, const LocalKe
     return track;
 }
 
-Guess coarse_guess(const OdometryOptions& options, const LocalKeyframe& keyframe, const PreparedFrame& view,
+Guess coarse_guess(const OdometryOptions& options, const LocalKeyframe& keyframe, const PreparedFrame& frame,
                    const Guess& guess, const DenseReference& last, const Pose& keyframe_from_last) {
     Guess better = guess;
     Pose& pose = better.camera_from_keyframe;
     for (const DenseLevel& level : last.levels) {
         for (int i = 0; i < kCoarseSteps; ++i) {
-            Alignment alignment = make_alignment(options, view, guess);
+            Alignment alignment = make_alignment(options, frame, guess);
             QuadraticTerm photometric =
-                photometric_term(level, view.pyramid, view.camera->color, pose * keyframe_from_last);
+                photometric_term(level, frame.pyramid, frame.camera->color, pose * keyframe_from_last);
             photometric.at = pose;
             alignment.quadratics.push_back(photometric);
-            alignment.quadratics.push_back(match_surface(keyframe.surface, view.camera->color, view.samples,
+            alignment.quadratics.push_back(match_patches(keyframe.patches, frame.camera->color, frame.samples,
                                                          pose, kCoarseGate, options.surface_weight)
                                                .term);
             const Pose next = align(alignment, pose, 2).camera_from_keyframe;
@@ -271,4 +288,4 @@ Guess coarse_guess(const OdometryOptions& options, const LocalKeyframe& keyframe
     return better;
 }
 
-}  // namespace planemap
+}  // namespace planemap::odometry

@@ -9,44 +9,11 @@
 #include "core/keyframe.hpp"
 #include "odometry/alignment.hpp"
 #include "odometry/dense.hpp"
-#include "odometry/flow.hpp"
+#include "odometry/local_keyframes.hpp"
 #include "odometry/options.hpp"
-#include "odometry/surface.hpp"
+#include "odometry/prepared_frame.hpp"
 
-namespace planemap {
-
-/// A frame prepared for tracking.
-struct PreparedFrame {
-    std::int64_t utime = 0;     ///< depth time, microseconds
-    double color_offset_s = 0;  ///< colour time minus depth time
-    double readout_s = 0;       ///< see Alignment
-    const GrayImage* gray = nullptr;
-    const DepthImage* depth = nullptr;
-    const CameraInfo* camera = nullptr;
-    FlowPyramid pyramid;  ///< empty without colour
-    std::vector<SurfaceSample> samples;
-    std::vector<PlanarRegion> regions;  ///< the valid ones
-};
-
-/// A corner of a keyframe with its 3D point.
-struct TrackPoint {
-    cv::Point2f pixel;
-    Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< keyframe camera frame at its depth time, metres
-    Eigen::Vector3d per_readout = Eigen::Vector3d::Zero();  ///< see PointTerm::point_per_readout
-    double inverse_depth_sigma = 0;                         ///< 1/m
-    int region = -1;                                        ///< region it was regularised to; -1: none
-};
-
-/// A keyframe that frames are tracked against.
-struct LocalKeyframe {
-    int id = -1;
-    std::int64_t utime = 0;
-    Pose odom_from_keyframe = Pose::Identity();
-    std::vector<TrackPoint> points;
-    FlowPyramid pyramid;  ///< with derivatives
-    Surface surface;
-    std::vector<PlanarRegion> regions;
-};
+namespace planemap::odometry {
 
 /// What is known of a frame's pose before it is tracked.
 struct Guess {
@@ -71,6 +38,24 @@ struct Track {
     bool degenerate = false;  ///< a direction is known from the guess only
 };
 
+/// Where a frame is, and how it is known.
+struct Located {
+    Track track;
+    int keyframe_id = -1;
+    Pose odom_from_keyframe = Pose::Identity();
+    bool relocalised = false;  ///< against a remembered keyframe that can no longer be tracked against
+    bool filtered = true;      ///< its jitter is to be taken out; else the pose is taken as measured
+
+    Pose keyframe_from_camera() const { return track.alignment.camera_from_keyframe.inverse(); }
+    void move_to(const Pose& odom_from_camera) {
+        track.alignment.camera_from_keyframe = odom_from_camera.inverse() * odom_from_keyframe;
+    }
+    Pose odom_from_camera() const { return orthonormalised(odom_from_keyframe * keyframe_from_camera()); }
+    /// Of small motions of keyframe_from_camera in the camera frame, which are those of camera_from_keyframe
+    /// reversed.
+    Matrix6d covariance() const;
+};
+
 /// How flow searches.
 struct FlowSearch {
     const FlowPyramid* from = nullptr;
@@ -79,31 +64,30 @@ struct FlowSearch {
     int levels = 3;
 };
 
-/// Flow from the keyframe (or another frame that saw its points) to the view, started at the guess; then the
+/// Flow from the keyframe (or another frame that saw its points) to the frame, started at the guess; then the
 /// pose from points, surfaces, planes and guess together. Nothing when too few points fit one motion.
 std::optional<Track> track_points(const OdometryOptions& options, const LocalKeyframe& keyframe,
-                                  const PreparedFrame& view, const Guess& guess, const FlowSearch& search);
+                                  const PreparedFrame& frame, const Guess& guess, const FlowSearch& search);
 
-/// The pose from points that are already found: `pixels` of the keyframe's points with `found` set.
-std::optional<Track> align_points(const OdometryOptions& options, const LocalKeyframe& keyframe,
-                                  const PreparedFrame& view, const Guess& guess,
-                                  std::vector<cv::Point2f> pixels, const std::vector<char>& found);
+/// The same with flow from the keyframe's own image, on so many pyramid levels.
+std::optional<Track> track_points(const OdometryOptions& options, const LocalKeyframe& keyframe,
+                                  const PreparedFrame& frame, const Guess& guess, int levels);
 
 /// The pose from depth alone: point-to-plane against the keyframe's surface and planes, from the guess.
 /// Nothing when too little of the surface is seen again.
 std::optional<Track> track_surface(const OdometryOptions& options, const LocalKeyframe& keyframe,
-                                   const PreparedFrame& view, const Guess& guess);
+                                   const PreparedFrame& frame, const Guess& guess);
 
 /// A better guess from the whole image at coarse levels against the last frame, and from depth against the
 /// keyframe's surface: for blur and motions that the prediction missed.
-Guess coarse_guess(const OdometryOptions& options, const LocalKeyframe& keyframe, const PreparedFrame& view,
+Guess coarse_guess(const OdometryOptions& options, const LocalKeyframe& keyframe, const PreparedFrame& frame,
                    const Guess& guess, const DenseReference& last, const Pose& keyframe_from_last);
 
-/// The view's regions against the keyframe's at camera_from_keyframe: the sum over each region's points of
+/// The frame's regions against the keyframe's at camera_from_keyframe: the sum over each region's points of
 /// the squared distance to the keyframe's plane, exact from its moments. A plane counts as at most
 /// `independent_points` points.
 QuadraticTerm match_planes(std::span<const PlanarRegion> keyframe_regions,
                            std::span<const PlanarRegion> regions, const Pose& camera_from_keyframe,
                            const DepthNoise& noise, double independent_points);
 
-}  // namespace planemap
+}  // namespace planemap::odometry

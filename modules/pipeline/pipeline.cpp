@@ -87,9 +87,9 @@ std::optional<std::string> Pipeline::reason_lost() {
         most = std::max(most, {count_of(reason), reason});
     }
     if (refused > lost) return std::to_string(most.first) + " " + most.second + " are not used";
-    if (2 * count_of(OdometryShell::kNoReadings) > lost)
+    if (2 * count_of(odometry::OdometryShell::kNoReadings) > lost)
         return "they have hardly a depth reading that is valid and within the camera's depth_range_m";
-    if (2 * count_of(OdometryShell::kBesideColor) > lost)
+    if (2 * count_of(odometry::OdometryShell::kBesideColor) > lost)
         return "their depth lies beside the colour image; are camera.json's cameras and color_from_depth "
                "right?";
     return std::nullopt;

@@ -21,8 +21,8 @@
 namespace planemap {
 
 struct PipelineOptions {
-    SegmentationOptions segmentation;
-    OdometryOptions odometry;
+    segmentation::SegmentationOptions segmentation;
+    odometry::OdometryOptions odometry;
     GraphOptions graph;
     MapShellOptions map;
     OctomapOptions octomap;
@@ -63,8 +63,8 @@ class Pipeline {
     /// What went wrong on the bus, by its kind.
     const Complaints& complaints() const { return bus_.complaints(); }
     FrameDecoder& decoder() { return *decoder_; }
-    SegmentationShell& segmentation() { return segmentation_; }
-    OdometryShell& odometry() { return odometry_; }
+    segmentation::SegmentationShell& segmentation() { return segmentation_; }
+    odometry::OdometryShell& odometry() { return odometry_; }
     GraphShell* graph() { return graph_.get(); }                    ///< nullptr without one
     const GivenPoses* given_poses() { return given_poses_.get(); }  ///< nullptr without
     MapShell& map() { return *map_; }  ///< precondition: with_map, and a graph or given poses
@@ -73,8 +73,8 @@ class Pipeline {
   private:
     Bus& bus_;
     std::shared_ptr<FrameDecoder> decoder_;
-    SegmentationShell segmentation_;
-    OdometryShell odometry_;
+    segmentation::SegmentationShell segmentation_;
+    odometry::OdometryShell odometry_;
     std::unique_ptr<GraphShell> graph_;
     std::unique_ptr<GivenPoses> given_poses_;
     std::unique_ptr<MapShell> map_;

@@ -5,7 +5,7 @@
 #include <array>
 #include <utility>
 
-namespace planemap {
+namespace planemap::segmentation {
 
 namespace {
 
@@ -110,4 +110,4 @@ void CellGrid::take_labels(Image<std::uint16_t>& out) {
     for (int v = 0; v < height_; ++v) std::copy_n(labels_.row(v), width_, out.row(v));
 }
 
-}  // namespace planemap
+}  // namespace planemap::segmentation

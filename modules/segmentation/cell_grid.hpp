@@ -8,7 +8,7 @@
 #include "core/image.hpp"
 #include "segmentation/cell_kernels.hpp"
 
-namespace planemap {
+namespace planemap::segmentation {
 
 /// A depth image cut into cells of 8 x 8 pixels, row by row. An image whose sides are no multiple of a cell
 /// is padded with invalid readings.
@@ -74,4 +74,4 @@ class CellGrid {
     std::vector<PointSums> sums_;
 };
 
-}  // namespace planemap
+}  // namespace planemap::segmentation

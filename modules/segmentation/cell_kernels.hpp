@@ -10,7 +10,7 @@
 #include "core/camera.hpp"
 #include "segmentation/point_sums.hpp"
 
-namespace planemap {
+namespace planemap::segmentation {
 
 inline constexpr int kCellPx = 8;
 
@@ -113,4 +113,4 @@ const CellKernels* avx2_cell_kernels();
 /// The fastest that this machine runs.
 const CellKernels& best_cell_kernels();
 
-}  // namespace planemap
+}  // namespace planemap::segmentation

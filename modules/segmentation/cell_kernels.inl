@@ -5,7 +5,7 @@
 #include "segmentation/cell_kernels.hpp"
 #include "segmentation/lanes.hpp"
 
-namespace planemap {
+namespace planemap::segmentation {
 namespace {
 
 /// Pixel offsets from a cell's centre: of the columns, and their squares.
@@ -159,6 +159,24 @@ void to_points(const CellSums& s, const Centres& at, const CellRules& rules, Poi
         out[k] = {n[k], px[k], py[k], z[k], xx[k], xy[k], xz[k], yy[k], yz[k], zz[k]};
 }
 
+/// The sensor's noise, with the rounding to raw units.
+inline Float8 sigma_at(const Float8& z, const CellRules& rules) {
+    const Float8 off = z - static_cast<float>(rules.noise.offset_m);
+    const Float8 noise = splat(static_cast<float>(rules.noise.base_m)) +
+                         off * off * static_cast<float>(rules.noise.quadratic_per_m);
+    const auto rounding = static_cast<float>(1 / (12 * rules.units_per_metre * rules.units_per_metre));
+    return square_root(noise * noise + rounding);
+}
+
+/// cos(limit + atan(error)): how far a cell's normal, known to within `error`, may lie from its region's.
+inline Float8 widened_cosine(const Float8& error, const CellRules& rules) {
+    const auto cosine = static_cast<float>(std::cos(rules.grow_angle_rad)),
+               sine = static_cast<float>(std::sin(rules.grow_angle_rad));
+    const Float8 sum = (splat(cosine) - error * sine) / square_root(splat(1.0f) + error * error);
+    constexpr float kWidest = 0.17f;  // of about 80 degrees
+    return select(sum > splat(kWidest), sum, splat(kWidest));
+}
+
 /// Least squares of relative depth in each cell: the a, b, c that minimise the sum of (1 - r w)^2 with
 /// r = z / reference and w = 1 + c + a u + b v. All is written in differences to 1, so that nothing cancels.
 void fit_cells(const CellSums& s, const Centres& at, const CellRules& rules, Cell* out) {
@@ -190,12 +208,7 @@ void fit_cells(const CellSums& s, const Centres& at, const CellRules& rules, Cel
     const Float8 c = w - a * x - b * y;
     const Float8 per_steepness = one / square_root(a * a + b * b + c * c);
 
-    // The sensor's noise, with the rounding to raw units.
-    const Float8 z = one / w, off = z - static_cast<float>(rules.noise.offset_m);
-    const Float8 noise = splat(static_cast<float>(rules.noise.base_m)) +
-                         off * off * static_cast<float>(rules.noise.quadratic_per_m);
-    const auto rounding = static_cast<float>(1 / (12 * rules.units_per_metre * rules.units_per_metre));
-    const Float8 sigma = square_root(noise * noise + rounding), sigma_w = sigma * w * w;
+    const Float8 sigma = sigma_at(one / w, rules), sigma_w = sigma * w * w;
     // At a grazing angle an error of the pixel's place becomes one of depth.
     const auto lateral = static_cast<float>(rules.lateral_px * rules.lateral_px);
     const auto planarity = static_cast<float>(rules.planarity_sigmas * rules.planarity_sigmas);
@@ -204,13 +217,8 @@ void fit_cells(const CellSums& s, const Centres& at, const CellRules& rules, Cel
     const Float8 limit_sigmas = sigma * static_cast<float>(rules.grow_sigmas);
     const Float8 limit_m = splat(static_cast<float>(rules.grow_m));
     const Float8 reach = select(limit_sigmas > limit_m, limit_sigmas, limit_m) * w;
-    // cos(limit + atan(error)), where the normal's own error is sigma over the cell's width.
-    const Float8 error = sigma * w * (fx / kCellPx);
-    const auto cosine = static_cast<float>(std::cos(rules.grow_angle_rad)),
-               sine = static_cast<float>(std::sin(rules.grow_angle_rad));
-    const Float8 cos_sum = (splat(cosine) - error * sine) / square_root(one + error * error);
-    constexpr float kWidest = 0.17f;  // of about 80 degrees
-    const Float8 cos_limit = select(cos_sum > splat(kWidest), cos_sum, splat(kWidest));
+    // The normal's own error is sigma over the cell's width.
+    const Float8 cos_limit = widened_cosine(sigma * w * (fx / kCellPx), rules);
     const float fxx = 1 / (fx * fx), fyy = 1 / (fy * fy);
     Float8 low[8] = {x,
                      y,
@@ -383,4 +391,4 @@ void label(const CellRules& rules, const BorderBand& band, const CellPixels& cel
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::segmentation

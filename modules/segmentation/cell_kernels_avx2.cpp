@@ -6,7 +6,7 @@
 #include "segmentation/cell_kernels.hpp"
 #endif
 
-namespace planemap {
+namespace planemap::segmentation {
 
 const CellKernels* avx2_cell_kernels() {
 #ifdef __AVX2__
@@ -17,4 +17,4 @@ const CellKernels* avx2_cell_kernels() {
 #endif
 }
 
-}  // namespace planemap
+}  // namespace planemap::segmentation

@@ -8,7 +8,7 @@
 #include "segmentation/cell_kernels.hpp"
 #include "segmentation/segmenter.hpp"
 
-namespace planemap {
+namespace planemap::segmentation {
 
 /// The default method: planes are fitted to inverse depth in cells of 8 x 8 pixels, grown over cells,
 /// brought to pixel-sharp borders, and fitted again. Lengths that stand beside a number of sigmas are lower
@@ -39,4 +39,4 @@ struct CellOptions {
 std::unique_ptr<Segmenter> make_cell_segmenter(const CellOptions& options,
                                                const CellKernels& kernels = best_cell_kernels());
 
-}  // namespace planemap
+}  // namespace planemap::segmentation

@@ -18,7 +18,7 @@
 #include <immintrin.h>
 #endif
 
-namespace planemap {
+namespace planemap::segmentation {
 namespace {
 
 #ifndef PLANEMAP_PORTABLE_LANES
@@ -308,4 +308,4 @@ inline int sum_of(const Short8& x) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::segmentation

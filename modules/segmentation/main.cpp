@@ -3,10 +3,10 @@
 
 int main(int argc, char** argv) {
     planemap::Process process("segmentation", "Depth images to planar regions.");
-    planemap::SegmentationOptions options;
+    planemap::segmentation::SegmentationOptions options;
     add_flags(process.flags(), options);
     return process.run(argc, argv, [&](planemap::Bus& bus) {
-        return std::make_unique<planemap::SegmentationShell>(
+        return std::make_unique<planemap::segmentation::SegmentationShell>(
             bus, std::make_shared<planemap::FrameDecoder>(bus), options);
     });
 }

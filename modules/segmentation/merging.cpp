@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-namespace planemap {
+namespace planemap::segmentation {
 
 namespace {
 
@@ -110,4 +110,4 @@ void merge_regions(const MergeRules& rules, std::vector<MergeRegion>& regions, T
     }
 }
 
-}  // namespace planemap
+}  // namespace planemap::segmentation

@@ -9,7 +9,7 @@
 #include "core/camera.hpp"
 #include "segmentation/point_sums.hpp"
 
-namespace planemap {
+namespace planemap::segmentation {
 
 /// When two regions are one; see CellOptions.
 struct MergeRules {
@@ -61,4 +61,4 @@ void merge_regions(const MergeRules& rules, std::vector<MergeRegion>& regions, T
 /// What a region has become part of.
 std::uint16_t root(const std::vector<MergeRegion>& regions, std::uint16_t label);
 
-}  // namespace planemap
+}  // namespace planemap::segmentation

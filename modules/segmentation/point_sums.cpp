@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace planemap {
+namespace planemap::segmentation {
 
 Moments PointSums::moments() const {
     Moments m;
@@ -33,4 +33,4 @@ InverseDepthFit PointSums::fit() const {
     return fit;
 }
 
-}  // namespace planemap
+}  // namespace planemap::segmentation

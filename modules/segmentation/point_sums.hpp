@@ -9,7 +9,7 @@
 #include "core/moments.hpp"
 #include "core/plane.hpp"
 
-namespace planemap {
+namespace planemap::segmentation {
 
 /// 1/z = a x + b y + c, per metre.
 struct InverseDepthPlane {
@@ -61,4 +61,4 @@ struct PointSums {
     InverseDepthFit fit() const;
 };
 
-}  // namespace planemap
+}  // namespace planemap::segmentation

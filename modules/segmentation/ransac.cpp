@@ -18,7 +18,7 @@
 
 #include "segmentation/shape.hpp"
 
-namespace planemap {
+namespace planemap::segmentation {
 
 namespace {
 
@@ -167,4 +167,4 @@ std::unique_ptr<Segmenter> make_ransac_segmenter(const RansacOptions& options, s
     return std::make_unique<RansacSegmenter>(options, seed);
 }
 
-}  // namespace planemap
+}  // namespace planemap::segmentation

@@ -8,7 +8,7 @@
 #include "core/validation.hpp"
 #include "segmentation/segmenter.hpp"
 
-namespace planemap {
+namespace planemap::segmentation {
 
 /// The paper's method (section 2.1): the plane with the most inliers is found by RANSAC and removed, again
 /// and again.
@@ -29,4 +29,4 @@ struct RansacOptions {
 /// The same seed gives the same regions. Throws std::invalid_argument for bad options.
 std::unique_ptr<Segmenter> make_ransac_segmenter(const RansacOptions& options, std::uint64_t seed);
 
-}  // namespace planemap
+}  // namespace planemap::segmentation

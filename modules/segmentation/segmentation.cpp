@@ -3,7 +3,7 @@
 
 #include "core/validation.hpp"
 
-namespace planemap {
+namespace planemap::segmentation {
 
 void SegmentationOptions::validate() const {
     FieldErrors errors("segmentation options");
@@ -19,4 +19,4 @@ std::unique_ptr<Segmenter> make_segmenter(const SegmentationOptions& options) {
     return make_cell_segmenter(options.cells);
 }
 
-}  // namespace planemap
+}  // namespace planemap::segmentation

@@ -9,7 +9,7 @@
 #include "segmentation/ransac.hpp"
 #include "segmentation/segmenter.hpp"
 
-namespace planemap {
+namespace planemap::segmentation {
 
 struct SegmentationOptions {
     std::string method = "cells";  ///< "cells", or "ransac" for the paper's method
@@ -24,4 +24,4 @@ struct SegmentationOptions {
 /// The segmenter that the options ask for; throws std::invalid_argument for bad options.
 std::unique_ptr<Segmenter> make_segmenter(const SegmentationOptions& options);
 
-}  // namespace planemap
+}  // namespace planemap::segmentation

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "segmentation/segmentation_shell.hpp"
 
-namespace planemap {
+namespace planemap::segmentation {
 
 void add_flags(Flags& flags, SegmentationOptions& options, const std::string& prefix) {
     flags.section("Segmentation", prefix);
@@ -53,4 +53,4 @@ void add_flags(Flags& flags, SegmentationOptions& options, const std::string& pr
               "stop early when a sample without outliers was drawn this probably");
 }
 
-}  // namespace planemap
+}  // namespace planemap::segmentation

@@ -4,7 +4,7 @@
 #include "messages/channels.hpp"
 #include "messages/convert.hpp"
 
-namespace planemap {
+namespace planemap::segmentation {
 
 SegmentationShell::SegmentationShell(Bus& bus, std::shared_ptr<FrameDecoder> decoder,
                                      const SegmentationOptions& options)
@@ -29,4 +29,4 @@ void SegmentationShell::on_frame(const Frame& frame) {
     status_.set_text(std::to_string(regions.regions.size()) + " regions");
 }
 
-}  // namespace planemap
+}  // namespace planemap::segmentation

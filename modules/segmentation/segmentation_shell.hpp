@@ -7,7 +7,7 @@
 #include "messages/process.hpp"
 #include "segmentation/segmentation.hpp"
 
-namespace planemap {
+namespace planemap::segmentation {
 
 /// OPENNI_FRAME to PLANEMAP_REGIONS: the depth image's planar regions in the camera frame (the colour
 /// camera's).
@@ -31,4 +31,4 @@ class SegmentationShell : public Shell {
 /// Flags for the options, each named --<prefix>NAME.
 void add_flags(Flags& flags, SegmentationOptions& options, const std::string& prefix = "");
 
-}  // namespace planemap
+}  // namespace planemap::segmentation

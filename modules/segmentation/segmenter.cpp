@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace planemap {
+namespace planemap::segmentation {
 
 void check_input(const DepthImage& depth, const CameraInfo& camera) {
     camera.validate();
@@ -19,4 +19,4 @@ void check_input(const DepthImage& depth, const CameraInfo& camera) {
         std::to_string(camera.depth.height) + " as camera.depth");
 }
 
-}  // namespace planemap
+}  // namespace planemap::segmentation

@@ -8,7 +8,7 @@
 #include "core/image.hpp"
 #include "core/region.hpp"
 
-namespace planemap {
+namespace planemap::segmentation {
 
 /// The planar regions of one depth image, in the depth camera's frame, normals towards the sensor (d > 0).
 struct Segmentation {
@@ -32,4 +32,4 @@ class Segmenter {
 /// Throws what Segmenter::segment() promises for a bad camera or an image of the wrong size.
 void check_input(const DepthImage& depth, const CameraInfo& camera);
 
-}  // namespace planemap
+}  // namespace planemap::segmentation

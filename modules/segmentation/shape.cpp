@@ -9,7 +9,7 @@
 #include <limits>
 #include <utility>
 
-namespace planemap {
+namespace planemap::segmentation {
 
 namespace {
 
@@ -314,4 +314,4 @@ void ShapeTracer::trace_all(const DepthImage& depth, const Image<std::uint16_t>&
         shape(camera, static_cast<std::uint16_t>(i + 1), regions[i]);
 }
 
-}  // namespace planemap
+}  // namespace planemap::segmentation

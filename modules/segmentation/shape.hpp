@@ -10,7 +10,7 @@
 #include "core/image.hpp"
 #include "core/region.hpp"
 
-namespace planemap {
+namespace planemap::segmentation {
 
 /// Which readings count, in raw units: the sensor's valid values within its trusted range.
 struct DepthRange {
@@ -60,4 +60,4 @@ class ShapeTracer {
     std::size_t longest_ring_ = 0;
 };
 
-}  // namespace planemap
+}  // namespace planemap::segmentation

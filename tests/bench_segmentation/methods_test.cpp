@@ -30,7 +30,7 @@ TEST(Decimated, CameraSeesTheSamePointsInTheSamePlaces) {
     for (const int step : {1, 2, 3, 4}) {
         const DepthImage small = decimated(depth, step);
         const CameraInfo small_camera = decimated(camera, step);
-        EXPECT_NO_THROW(check_input(small, small_camera));
+        EXPECT_NO_THROW(segmentation::check_input(small, small_camera));
         EXPECT_EQ(small.width, (645 + step - 1) / step);
         for (int v = 0; v < small.height; v += 11) {
             for (int u = 0; u < small.width; u += 11) {
@@ -66,7 +66,7 @@ TEST(Methods, AllFindTheTwoWallsInAllSizes) {
             if (step == 1 && info.name == "ransac-debian") continue;  // takes seconds
             Method method({info.name, step});
             EXPECT_GT(method.run(walls.depth, walls.camera), 0);
-            const Segmentation& found = method.result(walls.depth, walls.camera);
+            const segmentation::Segmentation& found = method.result(walls.depth, walls.camera);
             EXPECT_EQ(found.labels.width, 640);
             EXPECT_NE(scene::find(found, kWall1, 2, 10), nullptr) << info.name << '/' << step;
             EXPECT_NE(scene::find(found, kWall2, 2, 10), nullptr) << info.name << '/' << step;
@@ -81,8 +81,8 @@ TEST(Methods, BothBuildsOfRansacFindTheSame) {
     Method ours({"ransac", 4}), debian({"ransac-debian", 4});
     ours.run(walls.depth, walls.camera);
     debian.run(walls.depth, walls.camera);
-    const Segmentation a = ours.result(walls.depth, walls.camera),
-                       b = debian.result(walls.depth, walls.camera);
+    const segmentation::Segmentation a = ours.result(walls.depth, walls.camera),
+                                     b = debian.result(walls.depth, walls.camera);
     ASSERT_EQ(a.regions.size(), b.regions.size());
     for (std::size_t i = 0; i < a.regions.size(); ++i)
         EXPECT_LT(angle_between(a.regions[i].plane.normal, b.regions[i].plane.normal), 1e-3);

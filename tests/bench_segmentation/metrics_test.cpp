@@ -14,7 +14,7 @@ namespace {
 
 class FrameScoreTest : public testing::Test {
   protected:
-    FrameScore score(const Segmentation& segmentation) const {
+    FrameScore score(const segmentation::Segmentation& segmentation) const {
         return score_frame(walls.depth, walls.camera, normals, segmentation);
     }
 
@@ -35,7 +35,7 @@ TEST_F(FrameScoreTest, PerfectLabelsExplainEverything) {
 }
 
 TEST_F(FrameScoreTest, NoLabelsExplainNothing) {
-    Segmentation none;
+    segmentation::Segmentation none;
     none.labels = Image<std::uint16_t>(640, 480);
     const FrameScore s = score(none);
     EXPECT_EQ(s.explained(), 0);
@@ -45,7 +45,7 @@ TEST_F(FrameScoreTest, NoLabelsExplainNothing) {
 }
 
 TEST_F(FrameScoreTest, AWrongPlaneExplainsNothing) {
-    Segmentation far_off = walls.perfect;
+    segmentation::Segmentation far_off = walls.perfect;
     for (PlanarRegion& region : far_off.regions) region.plane.d += 0.5;
     const FrameScore s = score(far_off);
     EXPECT_EQ(s.explained(), 0);
@@ -60,7 +60,7 @@ TEST_F(FrameScoreTest, TurnedPlanesAreIncoherentFrom20AndOffFrom30Degrees) {
         bool coherent;
     };
     for (const Case& c : {Case{18, 0, true}, Case{23, 0, false}, Case{28, 0, false}, Case{40, 1, false}}) {
-        Segmentation segmentation = walls.perfect;
+        segmentation::Segmentation segmentation = walls.perfect;
         for (PlanarRegion& region : segmentation.regions) region.plane = turned(region.plane, c.angle_deg);
         const FrameScore s = score(segmentation);
         EXPECT_NEAR(s.off30(), c.off30, 0.02) << c.angle_deg;
@@ -70,14 +70,14 @@ TEST_F(FrameScoreTest, TurnedPlanesAreIncoherentFrom20AndOffFrom30Degrees) {
 }
 
 TEST_F(FrameScoreTest, APlaneAndItsReverseAreNotTheSame) {
-    Segmentation reversed = walls.perfect;
+    segmentation::Segmentation reversed = walls.perfect;
     for (PlanarRegion& region : reversed.regions) region.plane = region.plane.flipped();
     EXPECT_EQ(score(reversed).explained(), 1);
     EXPECT_GT(score(reversed).off30(), 0.99);
 }
 
 TEST_F(FrameScoreTest, HalfTheLabelsAreHalfOfIt) {
-    Segmentation half = walls.perfect;
+    segmentation::Segmentation half = walls.perfect;
     std::fill(half.labels.pixels.begin(), half.labels.pixels.begin() + 640 * 240, std::uint16_t{0});
     EXPECT_NEAR(score(half).explained(), 0.5, 1e-12);
     EXPECT_NEAR(score(half).coherent(), 0.5, 0.01);
@@ -85,7 +85,7 @@ TEST_F(FrameScoreTest, HalfTheLabelsAreHalfOfIt) {
 
 TEST_F(FrameScoreTest, FramesAddUp) {
     FrameScore sum = score(walls.perfect);
-    Segmentation none;
+    segmentation::Segmentation none;
     none.labels = Image<std::uint16_t>(640, 480);
     sum += score(none);
     EXPECT_EQ(sum.frames, 2);
@@ -104,7 +104,7 @@ TEST_F(FrameScoreTest, LabelsOnInvalidReadingsDoNotCount) {
 }
 
 TEST_F(FrameScoreTest, BadLabelImagesAreRefused) {
-    Segmentation wrong_size = walls.perfect, unknown_label = walls.perfect;
+    segmentation::Segmentation wrong_size = walls.perfect, unknown_label = walls.perfect;
     wrong_size.labels = Image<std::uint16_t>(10, 10);
     unknown_label.labels(5, 5) = 3;
     EXPECT_THROW(score(wrong_size), std::invalid_argument);

@@ -25,8 +25,8 @@ Sequence open(const std::string& name, int frames) {
 }
 
 /// The truth as a segmentation: what scores it must be perfect up to the sensor's noise.
-Segmentation as_segmentation(const Truth& truth) {
-    Segmentation segmentation;
+segmentation::Segmentation as_segmentation(const Truth& truth) {
+    segmentation::Segmentation segmentation;
     segmentation.labels = truth.pieces_of_pixels;
     for (const TruePiece& piece : truth.pieces) segmentation.regions.emplace_back().plane = piece.plane;
     return segmentation;

@@ -10,7 +10,7 @@
 namespace planemap::bench {
 namespace {
 
-MatchScore match(const TwoWalls& walls, const Segmentation& segmentation) {
+MatchScore match(const TwoWalls& walls, const segmentation::Segmentation& segmentation) {
     return match(walls.truth, segmentation, walls.depth, walls.camera, kLeastPixels);
 }
 
@@ -60,7 +60,7 @@ TEST(Match, PerfectLabelsScoreOne) {
 
 TEST(Match, NamesOfLabelsDoNotMatter) {
     const TwoWalls walls;
-    Segmentation swapped = walls.perfect;
+    segmentation::Segmentation swapped = walls.perfect;
     std::swap(swapped.regions[0], swapped.regions[1]);
     change(swapped.labels, 0, 0, 640, 480, [](int label) { return static_cast<std::uint16_t>(3 - label); });
     const MatchScore score = match(walls, swapped);
@@ -70,7 +70,7 @@ TEST(Match, NamesOfLabelsDoNotMatter) {
 
 TEST(Match, NothingFoundIsAllMissed) {
     const TwoWalls walls;
-    Segmentation none;
+    segmentation::Segmentation none;
     none.labels = Image<std::uint16_t>(640, 480);
     const MatchScore score = match(walls, none);
     EXPECT_EQ(score.recall(), 0);
@@ -81,7 +81,7 @@ TEST(Match, NothingFoundIsAllMissed) {
 
 TEST(Match, ASplitRegionIsOverSegmented) {
     const TwoWalls walls;
-    Segmentation split = walls.perfect;
+    segmentation::Segmentation split = walls.perfect;
     split.regions.push_back(split.regions[0]);
     change(split.labels, 0, 0, 640, 240,
            [](int label) { return static_cast<std::uint16_t>(label == 1 ? 3 : label); });
@@ -96,7 +96,7 @@ TEST(Match, ASplitRegionIsOverSegmented) {
 
 TEST(Match, TwoSurfacesInOneRegionAreUnderSegmented) {
     const TwoWalls walls;
-    Segmentation merged = walls.perfect;
+    segmentation::Segmentation merged = walls.perfect;
     change(merged.labels, 0, 0, 640, 480, [](int) { return std::uint16_t{1}; });
     const MatchScore score = match(walls, merged);
     EXPECT_EQ(score.recalled, 0);
@@ -116,7 +116,7 @@ TEST(Match, ARegionWhereNothingIsTrueIsNoise) {
 
 TEST(Match, SmallOnesNeitherMissNorFail) {
     const TwoWalls walls;
-    Segmentation with_speck = walls.perfect;
+    segmentation::Segmentation with_speck = walls.perfect;
     with_speck.regions.push_back(with_speck.regions[0]);
     change(with_speck.labels, 0, 0, 30, 30, [](int) { return std::uint16_t{3}; });
     EXPECT_EQ(match(walls, with_speck).found, 2);
@@ -138,14 +138,14 @@ TEST(Match, ASurfaceInTwoPiecesMayBeOneRegionOrTwo) {
     walls.truth = make_truth(surfaces, {kWall1}, walls.depth, walls.camera);
     ASSERT_EQ(walls.truth.pieces.size(), 2u);
 
-    Segmentation one;
+    segmentation::Segmentation one;
     one.regions.emplace_back().plane = kWall1;
     one.labels = surfaces;
     EXPECT_EQ(match(walls, one).recalled, 2);
     EXPECT_EQ(match(walls, one).precise, 1);
     EXPECT_EQ(match(walls, one).correct, 2);
 
-    Segmentation two = one;
+    segmentation::Segmentation two = one;
     two.regions.emplace_back().plane = kWall1;
     change(two.labels, 340, 0, 640, 480, [](int) { return std::uint16_t{2}; });
     EXPECT_EQ(match(walls, two).recalled, 2);
@@ -156,10 +156,10 @@ TEST(Match, ASurfaceInTwoPiecesMayBeOneRegionOrTwo) {
 
 TEST(Match, ErrorsOfParametersAreMeasuredAtTheRegion) {
     const TwoWalls walls;
-    Segmentation shifted = walls.perfect;
+    segmentation::Segmentation shifted = walls.perfect;
     for (PlanarRegion& region : shifted.regions) region.plane.d += 0.004;
     for (const double distance : match(walls, shifted).distance_m) EXPECT_NEAR(distance, 0.004, 1e-9);
-    Segmentation turned_by_1 = walls.perfect;
+    segmentation::Segmentation turned_by_1 = walls.perfect;
     for (PlanarRegion& region : turned_by_1.regions) region.plane = turned(region.plane, 1);
     for (const double angle : match(walls, turned_by_1).angle_deg) EXPECT_NEAR(angle, 1, 1e-5);
 }
@@ -167,7 +167,7 @@ TEST(Match, ErrorsOfParametersAreMeasuredAtTheRegion) {
 TEST(Match, FramesAddUp) {
     const TwoWalls walls;
     MatchScore sum = match(walls, walls.perfect);
-    Segmentation none;
+    segmentation::Segmentation none;
     none.labels = Image<std::uint16_t>(640, 480);
     sum += match(walls, none);
     EXPECT_EQ(sum.recall(), 0.5);

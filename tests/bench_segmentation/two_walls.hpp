@@ -9,6 +9,8 @@
 
 namespace planemap::bench {
 
+namespace scene = segmentation::scene;
+
 inline const Plane kWall1 = scene::tilted(0, 0.5, {0, 0, 2});
 inline const Plane kWall2 = scene::tilted(0, -0.5, {0, 0, 2});
 inline constexpr double kLeastPixels = 1000;
@@ -16,7 +18,7 @@ inline constexpr double kLeastPixels = 1000;
 struct TwoWalls {
     CameraInfo camera = scene::camera();
     DepthImage depth = scene::render(camera, {scene::plane(kWall1), scene::plane(kWall2)});
-    Segmentation perfect;  ///< labels 1 and 2, without noise, so every pixel has one
+    segmentation::Segmentation perfect;  ///< labels 1 and 2, without noise, so every pixel has one
     Truth truth;
 
     TwoWalls() {

@@ -8,11 +8,13 @@
 #include <limits>
 
 #include "core/random_values.hpp"
+#include "core/trace.hpp"
 
 namespace planemap {
 namespace {
 
 using test::Random;
+using test::trace;
 
 Mask random_mask(Random& random, int width, int height, double density) {
     Mask mask(width, height);
@@ -199,33 +201,6 @@ TEST(Outline, SimplifiedLeavesOutWhatIsNoArea) {
     EXPECT_TRUE(simplified(Outline{{square(0, 0, 0.1)}}, 1.0).empty()) << "smaller than the tolerance";
     const Outline stairs = trace(from_text({"####", "####", "####"}));
     EXPECT_EQ(simplified(stairs, 0.1).vertex_count(), 4u);
-}
-
-TEST(Outline, ConvexHullHoldsAllPointsAndIsConvex) {
-    Random random(4);
-    for (int i = 0; i < 50; ++i) {
-        std::vector<Eigen::Vector2d> points;
-        for (int k = 0; k < random.integer(3, 60); ++k)
-            points.emplace_back(random.integer(-9, 9), random.integer(-9, 9));
-        const Ring hull = convex_hull(points);
-        if (hull.empty()) continue;
-        for (std::size_t k = 0; k < hull.size(); ++k) {
-            const Eigen::Vector2d edge = hull[(k + 1) % hull.size()] - hull[k];
-            const Eigen::Vector2d next = hull[(k + 2) % hull.size()] - hull[(k + 1) % hull.size()];
-            EXPECT_GT(edge.x() * next.y() - edge.y() * next.x(), 0) << "strictly convex, counter-clockwise";
-            for (const auto& p : points) {
-                const Eigen::Vector2d to = p - hull[k];
-                EXPECT_GE(edge.x() * to.y() - edge.y() * to.x(), 0);
-            }
-        }
-    }
-}
-
-TEST(Outline, ConvexHullOfDegenerateSets) {
-    EXPECT_TRUE(convex_hull({}).empty());
-    const std::vector<Eigen::Vector2d> same(5, Eigen::Vector2d(1, 2)), line{{0, 0}, {1, 1}, {2, 2}, {3, 3}};
-    EXPECT_TRUE(convex_hull(same).empty());
-    EXPECT_TRUE(convex_hull(line).empty());
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "messages/channels.hpp"
 #include "messages/sample_messages.hpp"
+#include "messages/told_status.hpp"
 
 namespace planemap {
 namespace {
@@ -112,9 +113,9 @@ TEST_F(Subscribed, ShareAFrameAndTheTroubleOfOneIsNotTheNexts) {
     EXPECT_EQ(shared.get(), frames_[0].get());
     EXPECT_EQ(last.get(), frames_[0].get());
     EXPECT_EQ(&shared->depth(), &last->depth());
-    EXPECT_EQ(status_.received_count(), 1);
+    EXPECT_EQ(test::told(status_).received, 1);
     EXPECT_EQ(status_.decode_error_count(), 0);
-    EXPECT_EQ(second.received_count(), 0) << "frames are not its main stream";
+    EXPECT_EQ(test::told(second).received, 0) << "frames are not its main stream";
     EXPECT_EQ(second.decode_error_count(), 1);
     EXPECT_EQ(bus_.handler_errors(), 1);
 }
@@ -129,7 +130,7 @@ TEST_F(Subscribed, LateAndRepeatedFramesAndStampsThatGoBackAreCountedApart) {
     EXPECT_EQ(frames_.size(), 5u);
     EXPECT_EQ(lost("frames whose stamp went back"), 14);
     EXPECT_EQ(status_.dropped_count(), 16);
-    EXPECT_EQ(status_.received_count(), 21);
+    EXPECT_EQ(test::told(status_).received, 21);
 }
 
 TEST_F(Subscribed, StampsAtTheEndsOfTheirRangeAreErrors) {
@@ -224,7 +225,7 @@ TEST_F(Subscribed, FramesBeforeTheCameraAreCounted) {
     bus.publish(channels::kFrame, frame_message(DepthImage(64, 48, 900), RgbImage(64, 48),
                                                 ColorEncoding::kRaw, DepthEncoding::kRaw));
     bus.drain();
-    EXPECT_EQ(status.received_count(), 1);
+    EXPECT_EQ(test::told(status).received, 1);
     EXPECT_EQ(status.dropped_count(), 1);
     EXPECT_EQ(status.losses().size(), 1u);
 }

@@ -30,12 +30,9 @@ DepthImage random_depth(int width, int height) {
 TEST(ImageCodec, JpegComesBackNearly) {
     const RgbImage image = gradient(70, 50);
     const auto jpeg = encode_jpeg(image, 95);
-    const RgbImage back = decode_jpeg(jpeg, 70, 50);
     const GrayImage gray = decode_jpeg_luma(jpeg, 70, 50), expected = luma(image);
-    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
-        EXPECT_LT(std::abs(back.pixels[i].g - image.pixels[i].g), 12);
+    for (std::size_t i = 0; i < image.pixels.size(); ++i)
         EXPECT_LT(std::abs(gray.pixels[i] - expected.pixels[i]), 6);
-    }
 }
 
 TEST(ImageCodec, JpegOfTheWrongSizeCutShortOrGarbageIsAnError) {
@@ -46,13 +43,13 @@ TEST(ImageCodec, JpegOfTheWrongSizeCutShortOrGarbageIsAnError) {
         EXPECT_THROW(decode_jpeg_luma(std::span(jpeg).first(length), 70, 50), MessageError) << length;
     }
     std::vector<std::uint8_t> garbage(1000, 0x5a);
-    EXPECT_THROW(decode_jpeg(garbage, 70, 50), MessageError);
+    EXPECT_THROW(decode_jpeg_luma(garbage, 70, 50), MessageError);
 }
 
 TEST(ImageCodec, AfterACorruptJpegTheNextOneIsRead) {
     const auto jpeg = encode_jpeg(gradient(70, 50), 90);
-    EXPECT_THROW(decode_jpeg(std::span(jpeg).first(jpeg.size() / 2), 70, 50), MessageError);
-    EXPECT_NO_THROW(decode_jpeg(jpeg, 70, 50));
+    EXPECT_THROW(decode_jpeg_luma(std::span(jpeg).first(jpeg.size() / 2), 70, 50), MessageError);
+    EXPECT_NO_THROW(decode_jpeg_luma(jpeg, 70, 50));
 }
 
 TEST(ImageCodec, ZippedDepthComesBackExactly) {

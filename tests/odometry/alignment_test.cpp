@@ -5,7 +5,7 @@
 
 #include <random>
 
-namespace planemap {
+namespace planemap::odometry {
 namespace {
 
 const PinholeCamera kCamera{640, 480, 525, 520, 320, 240};
@@ -170,4 +170,4 @@ TEST(Align, InformationGrowsWithTheNumberOfPoints) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::odometry

@@ -5,7 +5,7 @@
 
 #include "room.hpp"
 
-namespace planemap {
+namespace planemap::odometry {
 namespace {
 
 PlanarRegion wall_region(double distance_m) {
@@ -86,4 +86,4 @@ TEST(Descriptors, AFrameMatchesItself) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::odometry

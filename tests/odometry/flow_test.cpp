@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-namespace planemap {
+namespace planemap::odometry {
 namespace {
 
 constexpr int kWidth = 160, kHeight = 120;
@@ -77,4 +77,4 @@ TEST(FlowTest, LevelsAreTheSameWithDerivatives) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::odometry

@@ -8,7 +8,7 @@
 #include <random>
 #include <utility>
 
-namespace planemap {
+namespace planemap::odometry {
 namespace {
 
 constexpr double kStep = 1.0 / 30;  // seconds
@@ -92,4 +92,4 @@ TEST(MotionFilterTest, AfterAGapAPoseIsAsMeasured) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::odometry

@@ -6,7 +6,7 @@
 
 #include "shell_fixture.hpp"
 
-namespace planemap {
+namespace planemap::odometry {
 namespace {
 
 class OdometryShellTest : public test::ShellTest {
@@ -178,4 +178,4 @@ TEST_F(OdometryShellTest, WhatIsWrongWithALostFramesDepthIsCounted) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::odometry

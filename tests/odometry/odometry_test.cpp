@@ -10,7 +10,7 @@
 
 #include "room.hpp"
 
-namespace planemap {
+namespace planemap::odometry {
 namespace {
 
 constexpr std::int64_t kPeriod = 33333;  // microseconds
@@ -143,23 +143,6 @@ RenderedFrame noisy_wall(const CameraInfo& camera, std::mt19937_64& random, doub
     for (auto& pixel : frame.depth.pixels)
         pixel = static_cast<std::uint16_t>(pixel + 0.004 * camera.depth_units_per_metre * noise(random));
     return frame;
-}
-
-/// All that it sees as one region, as the segmentation would give it.
-PlanarRegion whole_view(const CameraInfo& camera, const DepthImage& depth) {
-    PlanarRegion region;
-    for (int v = 2; v < depth.height; v += 4) {
-        for (int u = 2; u < depth.width; u += 4)
-            region.moments.add(camera.color.unproject(u, v, camera.metres(depth(u, v))));
-    }
-    const PlaneFit fit = fit_plane(region.moments);
-    region.plane = fit.plane;
-    region.rms = fit.rms;
-    region.box.frame_from_box.linear() = plane_axes(fit.plane.normal, {1, 0, 0});
-    region.box.frame_from_box.translation() = fit.plane.project(region.moments.mean());
-    region.box.half_extents = {1.2, 0.9, 0.01};
-    region.outline.rings = {{{-1.2, -0.9}, {1.2, -0.9}, {1.2, 0.9}, {-1.2, 0.9}}};
-    return region;
 }
 
 TEST_F(Room, StandingStillBeforeABareWallMakesNoKeyframes) {
@@ -299,4 +282,4 @@ TEST(OdometryOptions, EveryBadFieldIsNamed) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::odometry

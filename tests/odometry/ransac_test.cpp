@@ -5,7 +5,7 @@
 
 #include <random>
 
-namespace planemap {
+namespace planemap::odometry {
 namespace {
 
 const PinholeCamera kCamera{640, 480, 525, 525, 320, 240};
@@ -75,4 +75,4 @@ TEST(Ransac, NothingWithoutDepth) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::odometry

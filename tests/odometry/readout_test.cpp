@@ -5,7 +5,7 @@
 
 #include <limits>
 
-namespace planemap {
+namespace planemap::odometry {
 namespace {
 
 /// What a frame says that was aligned with `used_s` and sees `true_s`, that well.
@@ -41,4 +41,4 @@ TEST(ReadoutTest, StaysPossible) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::odometry

@@ -10,9 +10,11 @@
 
 #include "core/camera.hpp"
 #include "core/image.hpp"
+#include "core/moments.hpp"
 #include "core/plane.hpp"
+#include "core/region.hpp"
 
-namespace planemap {
+namespace planemap::odometry {
 
 struct RenderedFrame {
     GrayImage gray;
@@ -77,4 +79,21 @@ inline RenderedFrame render_room(const CameraInfo& info, const Pose& room_from_c
     return frame;
 }
 
-}  // namespace planemap
+/// All that is seen of a wall about 2 m ahead as one region, as the segmentation would give it.
+inline PlanarRegion whole_view(const CameraInfo& camera, const DepthImage& depth) {
+    PlanarRegion region;
+    for (int v = 2; v < depth.height; v += 4) {
+        for (int u = 2; u < depth.width; u += 4)
+            region.moments.add(camera.color.unproject(u, v, camera.metres(depth(u, v))));
+    }
+    const PlaneFit fit = fit_plane(region.moments);
+    region.plane = fit.plane;
+    region.rms = fit.rms;
+    region.box.frame_from_box.linear() = plane_axes(fit.plane.normal, {1, 0, 0});
+    region.box.frame_from_box.translation() = fit.plane.project(region.moments.mean());
+    region.box.half_extents = {1.2, 0.9, 0.01};
+    region.outline.rings = {{{-1.2, -0.9}, {1.2, -0.9}, {1.2, 0.9}, {-1.2, 0.9}}};
+    return region;
+}
+
+}  // namespace planemap::odometry

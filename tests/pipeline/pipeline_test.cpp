@@ -86,7 +86,7 @@ TEST_F(Resolutions, AWideDepthCameraBesideANarrowColourCameraIsTracked) {
 
 /// Real sensors' noise, ranges and gaps.
 TEST(OutlinesOfRecordings, DoNotReachBeyondReadings) {
-    const std::unique_ptr<Segmenter> segmenter = make_segmenter({});
+    const std::unique_ptr<segmentation::Segmenter> segmenter = segmentation::make_segmenter({});
     int looked_at = 0;
     for (const char* sequence : {"aims_robot", "d435_stills"}) {
         if (!std::filesystem::is_directory(test::data_folder(sequence))) continue;
@@ -94,9 +94,10 @@ TEST(OutlinesOfRecordings, DoNotReachBeyondReadings) {
         SensorFrame frame;
         for (int i = 0; dataset.next(frame).status == ReadResult::Status::kFrame; ++i) {
             if (i % 8 != 0) continue;
-            Segmentation segmentation;
+            segmentation::Segmentation segmentation;
             segmenter->segment(frame.depth, dataset.camera(), segmentation);
-            const test::Reach reach = test::reach_of(segmentation, frame.depth, dataset.camera());
+            const segmentation::Reach reach =
+                segmentation::reach_of(segmentation, frame.depth, dataset.camera());
             EXPECT_LE(reach.worst, 1) << sequence << ", frame " << i;
             EXPECT_EQ(reach.crossing, 0) << sequence << ", frame " << i;
             ++looked_at;

@@ -19,8 +19,8 @@ std::tuple<int, int, int> values(const Rgb& color) {
 TEST(Overlay, EachRegionHasAColourOfItsOwnAndWhatIsUnreadIsBlack) {
     const CameraInfo camera = small_camera();
     const DepthImage depth = small_depth();
-    Segmentation segmentation;
-    make_segmenter({})->segment(depth, camera, segmentation);
+    segmentation::Segmentation segmentation;
+    segmentation::make_segmenter({})->segment(depth, camera, segmentation);
     ASSERT_GE(segmentation.regions.size(), 2u);
     const RgbImage picture = draw_overlay(depth, camera, segmentation);
     ASSERT_EQ(picture.width, 320);
@@ -34,7 +34,7 @@ TEST(Overlay, EachRegionHasAColourOfItsOwnAndWhatIsUnreadIsBlack) {
 TEST(Overlay, WorksWithoutRegionsAndOnTinyImages) {
     for (const int side : {1, 2, 5}) {
         const CameraInfo camera = scene::camera(side, side);
-        Segmentation none;
+        segmentation::Segmentation none;
         none.labels = Image<std::uint16_t>(side, side);
         const RgbImage picture = draw_overlay(DepthImage(side, side, 1000), camera, none);
         EXPECT_EQ(picture.pixels.size(), static_cast<std::size_t>(side * side));
@@ -46,7 +46,7 @@ TEST(Overlay, WorksWithoutRegionsAndOnTinyImages) {
 
 TEST(Overlay, ARegionBehindTheCameraDoesNotHarm) {
     const CameraInfo camera = small_camera();
-    Segmentation segmentation;
+    segmentation::Segmentation segmentation;
     segmentation.labels = Image<std::uint16_t>(320, 240);
     PlanarRegion& region = segmentation.regions.emplace_back();
     region.box.frame_from_box.translation() = Eigen::Vector3d(0, 0, -1);

@@ -20,11 +20,11 @@ Eigen::Vector3d vector(const Json& json) {
 class RegionJson : public testing::Test {
   protected:
     RegionJson() {
-        make_segmenter({})->segment(small_depth(), small_camera(), segmentation);
+        segmentation::make_segmenter({})->segment(small_depth(), small_camera(), segmentation);
         json = Json::parse(regions_json(segmentation).dump());
     }
 
-    Segmentation segmentation;
+    segmentation::Segmentation segmentation;
     Json json;
 };
 

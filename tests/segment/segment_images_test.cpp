@@ -42,8 +42,8 @@ TEST_F(SegmentImages, LabelsAreTheLibrarys) {
         options.segmentation.method = method;
         const SegmentImagesReport report = segment({image});
         EXPECT_THAT(report.errors, IsEmpty());
-        Segmentation expected;
-        make_segmenter(options.segmentation)->segment(small_depth(), camera, expected);
+        segmentation::Segmentation expected;
+        segmentation::make_segmenter(options.segmentation)->segment(small_depth(), camera, expected);
         EXPECT_EQ(report.regions, expected.regions.size());
         EXPECT_EQ(decode_depth_png(read_file(options.output / "a.png"), 320, 240).pixels,
                   expected.labels.pixels);

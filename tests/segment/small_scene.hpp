@@ -6,6 +6,8 @@
 
 namespace planemap {
 
+namespace scene = segmentation::scene;
+
 inline CameraInfo small_camera() {
     return scene::camera(320, 240);
 }

@@ -46,7 +46,7 @@ void* allocate(std::size_t size, std::size_t alignment) {
     std::free(memory);
 }
 
-namespace planemap {
+namespace planemap::segmentation {
 namespace {
 
 /// One wall; a corner; a wall with 20 holes; steps; few planes with dust; nothing. Their regions, rings and
@@ -115,4 +115,4 @@ TEST(AllocationTest, TheCounterCounts) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::segmentation

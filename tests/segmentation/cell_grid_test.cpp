@@ -11,7 +11,7 @@
 #include "segmentation/scene.hpp"
 #include "segmentation/shape.hpp"
 
-namespace planemap {
+namespace planemap::segmentation {
 namespace {
 
 /// A tilted noisy plane with a step in it and holes.
@@ -285,4 +285,4 @@ TEST(CellGridTest, NothingValidIsNothingPlanar) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::segmentation

@@ -12,7 +12,7 @@
 
 #include "segmentation/scene.hpp"
 
-namespace planemap {
+namespace planemap::segmentation {
 namespace {
 
 constexpr double kDegrees = std::numbers::pi / 180;
@@ -338,4 +338,4 @@ TEST(CellsTest, RefusesBadOptions) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::segmentation

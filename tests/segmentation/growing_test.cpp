@@ -5,63 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <set>
 
-namespace planemap {
+#include "segmentation/cell_map.hpp"
+
+namespace planemap::segmentation {
 namespace {
-
-constexpr double kCell = 0.02;  // side, normalised coordinates
-constexpr double kPixels = 100;
-
-/// A map with its cells.
-struct OwnedMap {
-    std::vector<Cell> cells;
-    int columns = 0, rows = 0;
-
-    CellMap map() const { return {columns, rows, kCell, DepthNoise{}, cells}; }
-};
-
-/// A map whose cell (column, row) lies exactly on the plane that `plane_of` names; one with steepness 0 is
-/// not planar.
-OwnedMap make_map(int columns, int rows, const std::function<InverseDepthPlane(int, int)>& plane_of) {
-    OwnedMap owned;
-    owned.columns = columns;
-    owned.rows = rows;
-    for (int y = 0; y < rows; ++y) {
-        for (int x = 0; x < columns; ++x) {
-            Cell& cell = owned.cells.emplace_back();
-            PointSums sums;
-            const InverseDepthPlane plane = plane_of(x, y);
-            if (plane.steepness() == 0) continue;
-            for (const double dx : {-0.3, 0.3}) {
-                for (const double dy : {-0.3, 0.3}) {
-                    const double px = kCell * (x - 0.5 * columns + dx), py = kCell * (y - 0.5 * rows + dy);
-                    const double Z = 1 / plane.at(px, py), X = px * Z, Y = py * Z, k = kPixels / 4;
-                    sums.add(k, {1, X, Y, Z, X * X, X * Y, X * Z, Y * Y, Y * Z, Z * Z});
-                }
-            }
-            const InverseDepthFit fit = sums.fit();
-            const Eigen::Vector3f normal = -fit.plane.plane().normal.cast<float>();
-            cell.x = static_cast<float>(fit.x);
-            cell.y = static_cast<float>(fit.y);
-            cell.w = static_cast<float>(fit.w);
-            cell.sigma = static_cast<float>(DepthNoise{}.sigma(1 / fit.w));
-            cell.reach = std::max(0.01f, 1.5f * cell.sigma) * cell.w;
-            cell.nx = normal.x();
-            cell.ny = normal.y();
-            cell.nz = normal.z();
-            cell.cos_limit = std::cos(0.3f);
-            cell.a = static_cast<float>(fit.plane.a);
-            cell.b = static_cast<float>(fit.plane.b);
-            cell.xx = static_cast<float>(fit.xx);
-            cell.yy = static_cast<float>(fit.yy);
-            cell.pixels = static_cast<float>(kPixels);
-            cell.per_steepness = static_cast<float>(1 / fit.plane.steepness());
-        }
-    }
-    return owned;
-}
 
 std::size_t regions_of(const OwnedMap& owned, double min_pixels = 5 * kPixels) {
     RegionGrower grower{CellOptions{}};
@@ -159,4 +108,4 @@ TEST(GrowingTest, NothingPlanarOrNoCells) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::segmentation

@@ -8,7 +8,7 @@
 #include <functional>
 #include <numbers>
 
-namespace planemap {
+namespace planemap::segmentation {
 namespace {
 
 constexpr double kCell = 0.014;  // width, normalised coordinates
@@ -232,4 +232,4 @@ TEST(TouchListTest, ClearForgetsAll) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::segmentation

@@ -9,7 +9,7 @@
 #include "core/crossing.hpp"
 #include "segmentation/segmenter.hpp"
 
-namespace planemap::test {
+namespace planemap::segmentation {
 
 /// How far a segmentation's outlines reach beyond the readings of their regions.
 struct Reach {
@@ -47,4 +47,4 @@ inline Reach reach_of(const Segmentation& segmentation, const DepthImage& depth,
     return reach;
 }
 
-}  // namespace planemap::test
+}  // namespace planemap::segmentation

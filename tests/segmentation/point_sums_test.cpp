@@ -5,7 +5,7 @@
 
 #include <random>
 
-namespace planemap {
+namespace planemap::segmentation {
 namespace {
 
 /// Adds the point at image coordinates (x, y) and inverse depth w.
@@ -98,4 +98,4 @@ TEST(PointSumsTest, TooFewPointsOrALineGiveNoFit) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::segmentation

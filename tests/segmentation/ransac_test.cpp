@@ -5,7 +5,7 @@
 
 #include "segmentation/scene.hpp"
 
-namespace planemap {
+namespace planemap::segmentation {
 namespace {
 
 /// Four walls around the optical axis, so that there is one more than the paper's three.
@@ -95,4 +95,4 @@ TEST(RansacTest, RefusesBadOptions) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::segmentation

@@ -15,7 +15,7 @@
 #include "core/moments.hpp"
 #include "segmentation/segmenter.hpp"
 
-namespace planemap::scene {
+namespace planemap::segmentation::scene {
 
 /// Depth along the optical axis at which a ray (x, y, 1) meets a surface; infinity when it does not.
 using Surface = std::function<double(const Eigen::Vector3d& ray)>;
@@ -119,4 +119,4 @@ inline double labelled_share(const Segmentation& segmentation) {
                    static_cast<double>(pixels.size());
 }
 
-}  // namespace planemap::scene
+}  // namespace planemap::segmentation::scene

@@ -3,7 +3,7 @@
 
 #include "shell_fixture.hpp"
 
-namespace planemap {
+namespace planemap::segmentation {
 namespace {
 
 class SegmentationShellTest : public test::ShellTest {};
@@ -47,4 +47,4 @@ TEST_F(SegmentationShellTest, WithoutACameraFramesAreDroppedAndCounted) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::segmentation

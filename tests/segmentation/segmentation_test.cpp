@@ -9,7 +9,7 @@
 
 #include "segmentation/scene.hpp"
 
-namespace planemap {
+namespace planemap::segmentation {
 namespace {
 
 SegmentationOptions options_for(const std::string& method) {
@@ -242,4 +242,4 @@ TEST(SegmentationOptionsTest, NamesEveryBadField) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::segmentation

@@ -9,11 +9,12 @@
 #include <random>
 #include <vector>
 
+#include "core/trace.hpp"
 #include "segmentation/outline_reach.hpp"
 #include "segmentation/scene.hpp"
 #include "segmentation/segmentation.hpp"
 
-namespace planemap {
+namespace planemap::segmentation {
 namespace {
 
 /// A region whose pixels, all exactly on the plane, are those of label 1.
@@ -234,7 +235,7 @@ TEST(ShapeTest, OutlinesHoldTheVeryBlocksThatTraceDoes) {
                     if (labels(u, v) == r + 1) mask.set(u, v), ++blocks;
                 }
             }
-            const Outline expected = trace(mask), outline = traced.in_blocks(r, 1);
+            const Outline expected = test::trace(mask), outline = traced.in_blocks(r, 1);
             fill(outline, filled);
             EXPECT_EQ(filled.cells, mask.cells) << trial;
             ASSERT_EQ(outline.rings.size(), expected.rings.size()) << trial;
@@ -340,7 +341,7 @@ TEST(ShapeTest, OutlinesDoNotReachBeyondReadings) {
             trial % 4 != 0, static_cast<std::uint64_t>(trial + 1));
         Segmentation segmentation;
         segmenter->segment(depth, camera, segmentation);
-        const test::Reach reach = test::reach_of(segmentation, depth, camera);
+        const Reach reach = reach_of(segmentation, depth, camera);
         EXPECT_LE(reach.worst, 1) << trial;
         vertices += reach.vertices;
         crossing += reach.crossing;
@@ -387,4 +388,4 @@ TEST(DepthRangeTest, UnitsOfAnySize) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::segmentation

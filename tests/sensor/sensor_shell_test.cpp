@@ -121,7 +121,7 @@ TEST_F(SensorShellTest, PublishesEveryFrameInEveryEncoding) {
             EXPECT_EQ(cameras, 3) << "at the start and once a second";
             EXPECT_EQ(frames[2]->depth()(0, 0), 1003) << "after the broken one";
             EXPECT_EQ(frames[8]->seq(), 8u);
-            EXPECT_FALSE(frames[3]->has_color());
+            EXPECT_EQ(frames[3]->gray(), nullptr);
             EXPECT_EQ(frames[1]->color_utime(), 1295000);
             EXPECT_NEAR((*frames[1]->gray())(5, 5), 18, 2);
             EXPECT_EQ(shell.broken(), 1);

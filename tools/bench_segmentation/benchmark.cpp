@@ -36,8 +36,8 @@ double time_frame(Method& method, const DepthImage& depth, const CameraInfo& cam
 }
 
 /// The truth as a method that is always right would return it.
-Segmentation as_segmentation(const Truth& truth) {
-    Segmentation segmentation;
+segmentation::Segmentation as_segmentation(const Truth& truth) {
+    segmentation::Segmentation segmentation;
     segmentation.labels = truth.pieces_of_pixels;
     for (const TruePiece& piece : truth.pieces) segmentation.regions.emplace_back().plane = piece.plane;
     return segmentation;
@@ -106,7 +106,7 @@ void Benchmark::run_frame(const Sequence& sequence, std::size_t index, bool draw
     }
     const auto normals = local_normals(frame.depth, sequence.camera);
     if (frame.truth) {
-        const Segmentation perfect = as_segmentation(*frame.truth);
+        const segmentation::Segmentation perfect = as_segmentation(*frame.truth);
         truth.add(std::nullopt, frame, sequence.camera, normals, perfect);
         if (draw) this->draw(sequence, index, "truth", frame.depth, perfect);
     }
@@ -115,7 +115,7 @@ void Benchmark::run_frame(const Sequence& sequence, std::size_t index, bool draw
         const MethodName& name = contender.row.method;
         show_progress(sequence, index, name);
         const double ms = time_frame(contender.method, frame.depth, sequence.camera);
-        const Segmentation& result = contender.method.result(frame.depth, sequence.camera);
+        const segmentation::Segmentation& result = contender.method.result(frame.depth, sequence.camera);
         contender.row.add(ms, frame, sequence.camera, normals, result);
         if (draw)
             this->draw(sequence, index, name.name + "-" + std::to_string(name.subsampling), frame.depth,
@@ -124,7 +124,7 @@ void Benchmark::run_frame(const Sequence& sequence, std::size_t index, bool draw
 }
 
 void Benchmark::draw(const Sequence& sequence, std::size_t index, const std::string& name,
-                     const DepthImage& depth, const Segmentation& segmentation) const {
+                     const DepthImage& depth, const segmentation::Segmentation& segmentation) const {
     std::string folder_name = sequence.name;
     std::replace(folder_name.begin(), folder_name.end(), ':', '-');
     const std::filesystem::path folder = options_.overlays / folder_name;

@@ -36,7 +36,7 @@ class Benchmark {
     void run_frame(const Sequence& sequence, std::size_t index, bool draw, std::vector<Contender>& contenders,
                    Row& truth);
     void draw(const Sequence& sequence, std::size_t index, const std::string& name, const DepthImage& depth,
-              const Segmentation& segmentation) const;
+              const segmentation::Segmentation& segmentation) const;
     void show_progress(const Sequence& sequence, std::size_t index, const MethodName& method);
     void end_progress();
 

@@ -25,21 +25,22 @@ constexpr int kMaxSubsampling = 16;
 /// The project's own interface as a Finder.
 class SegmenterFinder : public Finder {
   public:
-    explicit SegmenterFinder(std::unique_ptr<Segmenter> segmenter) : segmenter_(std::move(segmenter)) {}
+    explicit SegmenterFinder(std::unique_ptr<segmentation::Segmenter> segmenter)
+        : segmenter_(std::move(segmenter)) {}
 
     void find(const DepthImage& depth, const CameraInfo& camera) override {
         segmenter_->segment(depth, camera, segmentation_);
     }
-    void result(Segmentation& out) override { out = segmentation_; }
+    void result(segmentation::Segmentation& out) override { out = segmentation_; }
 
   private:
-    std::unique_ptr<Segmenter> segmenter_;
-    Segmentation segmentation_;
+    std::unique_ptr<segmentation::Segmenter> segmenter_;
+    segmentation::Segmentation segmentation_;
 };
 
 /// The paper's settings.
-RansacOptions ransac_options(int subsampling) {
-    RansacOptions options;
+segmentation::RansacOptions ransac_options(int subsampling) {
+    segmentation::RansacOptions options;
     options.subsampling = subsampling;
     options.max_iterations = 1000;
     options.max_planes = 3;
@@ -54,11 +55,12 @@ bool is_ransac(const std::string& name) {
 std::unique_ptr<Finder> make_finder(const MethodName& method) {
     silence_pcl();
     const int step = method.subsampling;
-    const auto ours = [](std::unique_ptr<Segmenter> segmenter) {
+    const auto ours = [](std::unique_ptr<segmentation::Segmenter> segmenter) {
         return std::make_unique<SegmenterFinder>(std::move(segmenter));
     };
-    if (method.name == "cells") return ours(make_cell_segmenter({}));
-    if (method.name == "ransac") return ours(make_ransac_segmenter(ransac_options(step), kSeed));
+    if (method.name == "cells") return ours(segmentation::make_cell_segmenter({}));
+    if (method.name == "ransac")
+        return ours(segmentation::make_ransac_segmenter(ransac_options(step), kSeed));
     if (method.name == "ransac-debian")
         return ours(make_debian_ransac_segmenter(ransac_options(step), kSeed));
     if (method.name == "organised") return make_organised(std::max(3, 1000 / (step * step)));
@@ -170,7 +172,7 @@ double Method::run(const DepthImage& depth, const CameraInfo& camera) {
     return thread_ms() - start;
 }
 
-const Segmentation& Method::result(const DepthImage& depth, const CameraInfo& camera) {
+const segmentation::Segmentation& Method::result(const DepthImage& depth, const CameraInfo& camera) {
     finder_->result(segmentation_);
     if (step_ > 1)
         segmentation_.labels = spread(segmentation_.labels, segmentation_.regions, depth, camera, step_);

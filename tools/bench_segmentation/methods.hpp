@@ -19,7 +19,7 @@ class Finder {
     virtual void find(const DepthImage& depth, const CameraInfo& camera) = 0;
     /// The planes and labels of the last find() in ours. Of the regions only `plane` and what the method
     /// itself gives are set.
-    virtual void result(Segmentation& out) = 0;
+    virtual void result(segmentation::Segmentation& out) = 0;
 };
 
 /// A method at one subsampling.
@@ -60,12 +60,12 @@ class Method {
     /// Finds the planes; returns the thread's CPU time in milliseconds, decimation included.
     double run(const DepthImage& depth, const CameraInfo& camera);
     /// What the last run() found, labels in the full size. Not part of the time.
-    const Segmentation& result(const DepthImage& depth, const CameraInfo& camera);
+    const segmentation::Segmentation& result(const DepthImage& depth, const CameraInfo& camera);
 
   private:
     std::unique_ptr<Finder> finder_;
     int step_ = 1;  // of our decimation; 1 where the method itself subsamples
-    Segmentation segmentation_;
+    segmentation::Segmentation segmentation_;
 };
 
 }  // namespace planemap::bench

@@ -34,7 +34,8 @@ double FrameScore::rms() const {
 }
 
 FrameScore score_frame(const DepthImage& depth, const CameraInfo& camera,
-                       const Image<Eigen::Vector3f>& normals, const Segmentation& segmentation) {
+                       const Image<Eigen::Vector3f>& normals,
+                       const segmentation::Segmentation& segmentation) {
     const Image<std::uint16_t>& labels = segmentation.labels;
     if (labels.width != depth.width || labels.height != depth.height)
         throw std::invalid_argument("label image is not as large as the depth image");

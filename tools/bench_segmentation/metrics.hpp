@@ -40,7 +40,7 @@ struct FrameScore {
 /// ignored. Throws std::invalid_argument when the label image has not the depth image's size or a label has
 /// no region.
 FrameScore score_frame(const DepthImage& depth, const CameraInfo& camera,
-                       const Image<Eigen::Vector3f>& normals, const Segmentation& segmentation);
+                       const Image<Eigen::Vector3f>& normals, const segmentation::Segmentation& segmentation);
 
 /// Median and 95th percentile by the nearest rank of sorted values; NaN for none.
 double median(std::vector<double> values);

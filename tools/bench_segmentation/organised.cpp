@@ -43,7 +43,7 @@ class OrganisedFinder : public Finder {
         height_ = depth.height;
     }
 
-    void result(Segmentation& out) override {
+    void result(segmentation::Segmentation& out) override {
         out.regions.assign(coefficients_.size(), {});
         out.labels = Image<std::uint16_t>(width_, height_);
         for (std::size_t i = 0; i < coefficients_.size(); ++i) {

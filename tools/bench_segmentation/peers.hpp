@@ -22,7 +22,8 @@ std::unique_ptr<Finder> make_rgbd_plane(int block_px, bool with_normals);
 
 /// The project's ransac with PCL's templates from Debian's library instead of ones compiled with the
 /// project's flags.
-std::unique_ptr<Segmenter> make_debian_ransac_segmenter(const RansacOptions& options, std::uint64_t seed);
+std::unique_ptr<segmentation::Segmenter> make_debian_ransac_segmenter(
+    const segmentation::RansacOptions& options, std::uint64_t seed);
 
 /// Keeps PCL from writing a line for every unlucky sample.
 void silence_pcl();

@@ -12,11 +12,12 @@
 
 namespace planemap::bench {
 
-__attribute__((visibility("default"))) std::unique_ptr<Segmenter> make_debian_ransac_segmenter(
-    const RansacOptions& options, std::uint64_t seed);
+__attribute__((visibility("default"))) std::unique_ptr<segmentation::Segmenter> make_debian_ransac_segmenter(
+    const segmentation::RansacOptions& options, std::uint64_t seed);
 
-std::unique_ptr<Segmenter> make_debian_ransac_segmenter(const RansacOptions& options, std::uint64_t seed) {
-    return make_ransac_segmenter(options, seed);
+std::unique_ptr<segmentation::Segmenter> make_debian_ransac_segmenter(
+    const segmentation::RansacOptions& options, std::uint64_t seed) {
+    return segmentation::make_ransac_segmenter(options, seed);
 }
 
 }  // namespace planemap::bench

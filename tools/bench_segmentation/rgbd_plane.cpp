@@ -33,7 +33,7 @@ class RgbdPlaneFinder : public Finder {
         planes_(points_, normal_image, mask_, coefficients_);
     }
 
-    void result(Segmentation& out) override {
+    void result(segmentation::Segmentation& out) override {
         out.regions.assign(coefficients_.size(), {});
         out.labels = Image<std::uint16_t>(points_.cols, points_.rows);
         for (std::size_t i = 0; i < coefficients_.size(); ++i) {

@@ -21,7 +21,7 @@ double least_pixels(const DepthImage& depth) {
 
 /// The regions that count, in the world.
 void add_sightings(const DepthImage& depth, const CameraInfo& camera, const Pose& world_from_depth,
-                   const Segmentation& segmentation, WorldPlanes& world_planes) {
+                   const segmentation::Segmentation& segmentation, WorldPlanes& world_planes) {
     std::vector<Sighting> sightings(segmentation.regions.size());
     for (int v = 0; v < depth.height; ++v) {
         for (int u = 0; u < depth.width; ++u) {
@@ -60,7 +60,7 @@ nlohmann::ordered_json number(double value, bool known = true) {
 }  // namespace
 
 void Row::add(std::optional<double> frame_ms, const BenchFrame& frame, const CameraInfo& camera,
-              const Image<Eigen::Vector3f>& normals, const Segmentation& segmentation) {
+              const Image<Eigen::Vector3f>& normals, const segmentation::Segmentation& segmentation) {
     if (frame_ms) ms.push_back(*frame_ms);
     score += score_frame(frame.depth, camera, normals, segmentation);
     if (frame.truth) {

@@ -25,7 +25,7 @@ struct Row {
 
     /// Takes in one frame, timed or not. `normals` are the frame's local_normals().
     void add(std::optional<double> frame_ms, const BenchFrame& frame, const CameraInfo& camera,
-             const Image<Eigen::Vector3f>& normals, const Segmentation& segmentation);
+             const Image<Eigen::Vector3f>& normals, const segmentation::Segmentation& segmentation);
 };
 
 /// The heading and the lines of a table with aligned columns; "-" where a sequence has no truth or no poses.

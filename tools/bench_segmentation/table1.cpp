@@ -45,7 +45,7 @@ struct Found {
 
 /// `wall` is the wall's surface. Of several regions on a surface the first is true: methods return the
 /// largest first.
-Found judge(const Segmentation& segmentation, const Truth& truth, int wall) {
+Found judge(const segmentation::Segmentation& segmentation, const Truth& truth, int wall) {
     Found found;
     std::set<int> seen;
     for (const PlanarRegion& region : segmentation.regions) {

@@ -41,7 +41,7 @@ struct Tally {
     std::vector<double> found;
 };
 
-Tally tally(const Truth& truth, const Segmentation& segmentation, const DepthImage& depth,
+Tally tally(const Truth& truth, const segmentation::Segmentation& segmentation, const DepthImage& depth,
             const CameraInfo& camera) {
     const std::size_t regions = segmentation.regions.size();
     Tally tally{std::vector(truth.pieces.size(), std::vector<double>(regions)),
@@ -87,7 +87,7 @@ Overlaps join_pieces(const Truth& truth, const Tally& tally, double least_pixels
     return out;
 }
 
-void match_by_iou(const Overlaps& o, const Segmentation& segmentation, double least_pixels,
+void match_by_iou(const Overlaps& o, const segmentation::Segmentation& segmentation, double least_pixels,
                   MatchScore& score) {
     for (std::size_t f = 0; f < o.found.size(); ++f) score.found += o.found[f] >= least_pixels;
     for (std::size_t t = 0; t < o.truth.size(); ++t) {
@@ -208,7 +208,7 @@ MatchScore& MatchScore::operator+=(const MatchScore& o) {
     return *this;
 }
 
-MatchScore match(const Truth& truth, const Segmentation& segmentation, const DepthImage& depth,
+MatchScore match(const Truth& truth, const segmentation::Segmentation& segmentation, const DepthImage& depth,
                  const CameraInfo& camera, double least_pixels) {
     const Overlaps overlaps = join_pieces(truth, tally(truth, segmentation, depth, camera), least_pixels);
     MatchScore score;

@@ -50,7 +50,7 @@ struct MatchScore {
 
 /// Compares one frame. Found pixels without truth or without a trusted reading count against a found region
 /// only if the reading is trusted.
-MatchScore match(const Truth& truth, const Segmentation& segmentation, const DepthImage& depth,
+MatchScore match(const Truth& truth, const segmentation::Segmentation& segmentation, const DepthImage& depth,
                  const CameraInfo& camera, double least_pixels);
 
 }  // namespace planemap::bench

@@ -96,7 +96,8 @@ void draw_number(int number, const cv::Point& place, cv::Mat& canvas) {
 
 }  // namespace
 
-RgbImage draw_overlay(const DepthImage& depth, const CameraInfo& camera, const Segmentation& segmentation) {
+RgbImage draw_overlay(const DepthImage& depth, const CameraInfo& camera,
+                      const segmentation::Segmentation& segmentation) {
     RgbImage picture(depth.width, depth.height);
     for (int v = 0; v < depth.height; ++v) {
         for (int u = 0; u < depth.width; ++u) {

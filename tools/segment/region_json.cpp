@@ -32,7 +32,7 @@ Json outline_json(const PlanarRegion& region) {
 
 }  // namespace
 
-Json regions_json(const Segmentation& segmentation) {
+Json regions_json(const segmentation::Segmentation& segmentation) {
     std::vector<std::size_t> pixels(segmentation.regions.size() + 1);
     for (const std::uint16_t label : segmentation.labels.pixels) ++pixels.at(label);
     Json regions = Json::array();

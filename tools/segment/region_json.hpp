@@ -19,6 +19,6 @@ namespace planemap {
 ///   outline  rings of points [x, y, z] on the plane: {"hole": bool, "points": [...]}; the surface is on the
 ///            left of a ring seen from the camera's side, so an outer ring is counter-clockwise and a hole
 ///            clockwise
-nlohmann::ordered_json regions_json(const Segmentation& segmentation);
+nlohmann::ordered_json regions_json(const segmentation::Segmentation& segmentation);
 
 }  // namespace planemap

@@ -56,10 +56,10 @@ double at_share(const std::vector<double>& sorted, double share) {
 }
 
 /// Thread CPU time of `repeat` runs; the segmenter has been run on the image before.
-nlohmann::ordered_json measure(Segmenter& segmenter, const DepthImage& depth, const CameraInfo& camera,
-                               int repeat) {
+nlohmann::ordered_json measure(segmentation::Segmenter& segmenter, const DepthImage& depth,
+                               const CameraInfo& camera, int repeat) {
     std::vector<double> ms;
-    Segmentation unused;
+    segmentation::Segmentation unused;
     segmenter.segment(depth, camera, unused);
     for (int i = 0; i < repeat; ++i) {
         const double start = thread_ms();
@@ -150,10 +150,11 @@ SegmentImagesReport segment_images(const SegmentImagesOptions& options, const Ca
     // What a run that did not end left is a part of one image's results, which can be made again.
     ResultFolder folder(options.output, names_of(options.images), ".partial",
                         ResultFolder::Leftovers::kRemove);
-    const std::unique_ptr<Segmenter> segmenter = make_segmenter(options.segmentation);
+    const std::unique_ptr<segmentation::Segmenter> segmenter =
+        segmentation::make_segmenter(options.segmentation);
     SegmentImagesReport report;
     Progress progress(options.images.size(), options.quiet);
-    Segmentation segmentation;
+    segmentation::Segmentation segmentation;
     std::vector<std::filesystem::path> cut;
     const auto segment_one = [&](const std::filesystem::path& image) {
         const ResultNames names(image);

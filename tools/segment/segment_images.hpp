@@ -17,7 +17,7 @@ struct SegmentImagesOptions {
     int repeat = 0;                             ///< runs an image whose time is measured; 0: none
     bool overlay = false;                       ///< write STEM.overlay.png, too
     bool quiet = false;                         ///< no progress on stderr
-    SegmentationOptions segmentation;
+    segmentation::SegmentationOptions segmentation;
 
     /// Throws std::invalid_argument that names every bad field, and for two images whose results would have
     /// the same name.

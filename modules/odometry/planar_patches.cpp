@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "odometry/surface.hpp"
+#include "odometry/planar_patches.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
-namespace planemap {
+namespace planemap::odometry {
 namespace {
 
 constexpr double kSamePlaneAngle = 0.26;  // 15 degrees between a cell and the region it lies on
@@ -42,9 +42,9 @@ Plane fit_cell(const CellSums& sums, double u0, double v0, const PinholeCamera& 
 
 }  // namespace
 
-std::vector<SurfaceSample> sample_depth(const DepthImage& depth, const PinholeCamera& camera,
-                                        const CameraInfo& info, int stride_px) {
-    std::vector<SurfaceSample> samples;
+std::vector<DepthSample> sample_depth(const DepthImage& depth, const PinholeCamera& camera,
+                                      const CameraInfo& info, int stride_px) {
+    std::vector<DepthSample> samples;
     for (int v = stride_px / 2; v < depth.height; v += stride_px) {
         const std::uint16_t* row = depth.row(v);
         for (int u = stride_px / 2; u < depth.width; u += stride_px) {
@@ -56,15 +56,14 @@ std::vector<SurfaceSample> sample_depth(const DepthImage& depth, const PinholeCa
     return samples;
 }
 
-std::vector<SurfaceSample> without_shutter(std::vector<SurfaceSample> samples, const Twist& over_readout) {
+std::vector<DepthSample> without_shutter(std::vector<DepthSample> samples, const Twist& over_readout) {
     if (over_readout.isZero(0)) return samples;
-    for (SurfaceSample& sample : samples)
-        sample.point = moved(-sample.row_share * over_readout, sample.point);
+    for (DepthSample& sample : samples) sample.point = moved(-sample.row_share * over_readout, sample.point);
     return samples;
 }
 
-Surface::Surface(const DepthImage& depth, const PinholeCamera& camera, const CameraInfo& info, int cell_px,
-                 const Twist& over_readout)
+PlanarPatches::PlanarPatches(const DepthImage& depth, const PinholeCamera& camera, const CameraInfo& info,
+                             int cell_px, const Twist& over_readout)
     : camera_(camera), cell_px_(cell_px), columns_(depth.width / cell_px), rows_(depth.height / cell_px) {
     planes_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
     const int needed = cell_px * cell_px / 4 * 3 / 4;  // of every other pixel of every other row
@@ -101,7 +100,7 @@ Surface::Surface(const DepthImage& depth, const PinholeCamera& camera, const Cam
     }
 }
 
-void Surface::lay_on(std::span<const PlanarRegion> regions, const DepthNoise& noise) {
+void PlanarPatches::lay_on(std::span<const PlanarRegion> regions, const DepthNoise& noise) {
     const double centre = 0.5 * (cell_px_ - 1);
     for (int row = 0; row < rows_; ++row) {
         for (int column = 0; column < columns_; ++column) {
@@ -125,7 +124,7 @@ void Surface::lay_on(std::span<const PlanarRegion> regions, const DepthNoise& no
     }
 }
 
-const Plane* Surface::at(const Eigen::Vector2d& pixel) const {
+const Plane* PlanarPatches::at(const Eigen::Vector2d& pixel) const {
     if (!(pixel.x() >= -0.5 && pixel.y() >= -0.5 && pixel.x() < 1e5 && pixel.y() < 1e5)) return nullptr;
     const int column = static_cast<int>(pixel.x() + 0.5) / cell_px_;
     const int row = static_cast<int>(pixel.y() + 0.5) / cell_px_;
@@ -134,17 +133,17 @@ const Plane* Surface::at(const Eigen::Vector2d& pixel) const {
     return plane.d > 0 ? &plane : nullptr;
 }
 
-SurfaceMatch match_surface(const Surface& surface, const PinholeCamera& camera,
-                           const std::vector<SurfaceSample>& samples, const Pose& camera_from_keyframe,
-                           double gate_m, double weight) {
-    SurfaceMatch match;
+PatchMatch match_patches(const PlanarPatches& patches, const PinholeCamera& camera,
+                         const std::vector<DepthSample>& samples, const Pose& camera_from_keyframe,
+                         double gate_m, double weight) {
+    PatchMatch match;
     match.term.at = camera_from_keyframe;
     const Pose keyframe_from_camera = camera_from_keyframe.inverse();
     double squared = 0;
-    for (const SurfaceSample& sample : samples) {
+    for (const DepthSample& sample : samples) {
         const Eigen::Vector3d p = keyframe_from_camera * sample.point;
         if (!(p.z() > 0.05)) continue;
-        const Plane* plane = surface.at(camera.project(p));
+        const Plane* plane = patches.at(camera.project(p));
         if (!plane) continue;
         ++match.visible;
         const double distance = plane->signed_distance(p);
@@ -167,4 +166,4 @@ SurfaceMatch match_surface(const Surface& surface, const PinholeCamera& camera,
     return match;
 }
 
-}  // namespace planemap
+}  // namespace planemap::odometry

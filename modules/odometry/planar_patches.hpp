@@ -11,30 +11,30 @@
 #include "core/region.hpp"
 #include "odometry/alignment.hpp"
 
-namespace planemap {
+namespace planemap::odometry {
 
 /// One reading of a depth image.
-struct SurfaceSample {
+struct DepthSample {
     Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< camera frame, metres
     double sigma = 0;                                 ///< of its depth, metres
     double row_share = 0;                             ///< see row_share()
 };
 
 /// Every stride-th valid reading, rows and columns. `camera` is the camera the depth image is registered to.
-std::vector<SurfaceSample> sample_depth(const DepthImage& depth, const PinholeCamera& camera,
-                                        const CameraInfo& info, int stride_px);
+std::vector<DepthSample> sample_depth(const DepthImage& depth, const PinholeCamera& camera,
+                                      const CameraInfo& info, int stride_px);
 
 /// The samples where they were at the image's time; the camera moves by `over_readout` while it is read out.
-std::vector<SurfaceSample> without_shutter(std::vector<SurfaceSample> samples, const Twist& over_readout);
+std::vector<DepthSample> without_shutter(std::vector<DepthSample> samples, const Twist& over_readout);
 
 /// The surface seen in a depth image: one plane for each square cell whose readings lie on one.
 /// A plane is linear in inverse depth, 1/z = a u + b v + c, so a cell is a 3x3 least-squares fit.
-class Surface {
+class PlanarPatches {
   public:
-    Surface() = default;
+    PlanarPatches() = default;
     /// The camera moves by `over_readout` while the image is read out; the planes are those of its time.
-    Surface(const DepthImage& depth, const PinholeCamera& camera, const CameraInfo& info, int cell_px,
-            const Twist& over_readout = Twist::Zero());
+    PlanarPatches(const DepthImage& depth, const PinholeCamera& camera, const CameraInfo& info, int cell_px,
+                  const Twist& over_readout = Twist::Zero());
 
     /// Lays cells that lie on a region, within the noise of a reading, onto its plane. A cell's own plane
     /// tilts by its noise, and a wall of tilted cells holds a camera that slides along it.
@@ -51,7 +51,7 @@ class Surface {
     std::vector<Plane> planes_;  ///< d = 0: none
 };
 
-struct SurfaceMatch {
+struct PatchMatch {
     QuadraticTerm term;   ///< about the pose it was asked for
     int matched = 0;      ///< samples on the surface
     int visible = 0;      ///< samples that fall on a cell of the surface, matched or not
@@ -61,8 +61,8 @@ struct SurfaceMatch {
 /// Distances of a frame's samples to a keyframe's surface at camera_from_keyframe, weighted by the depth
 /// noise and a heavy tail; samples further off than the larger of gate_m and 3 sigma are left out. `weight`
 /// scales the information of each sample, whose errors are not independent of its neighbours'.
-SurfaceMatch match_surface(const Surface& surface, const PinholeCamera& camera,
-                           const std::vector<SurfaceSample>& samples, const Pose& camera_from_keyframe,
-                           double gate_m, double weight);
+PatchMatch match_patches(const PlanarPatches& patches, const PinholeCamera& camera,
+                         const std::vector<DepthSample>& samples, const Pose& camera_from_keyframe,
+                         double gate_m, double weight);
 
-}  // namespace planemap
+}  // namespace planemap::odometry

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "odometry/paper_method.hpp"
+
+#include "odometry/feature_matching.hpp"
+#include "odometry/features.hpp"
+#include "odometry/ransac.hpp"
+
+namespace planemap::odometry {
+
+std::optional<Located> PaperMethod::locate(const PreparedFrame& frame, const Surroundings& known) {
+    if (!frame.gray) return std::nullopt;
+    std::optional<Located> located;
+    const LocalKeyframe& keyframe = known.keyframes.current();
+    if (std::optional<Track> found = track(frame, known))
+        located = Located{std::move(*found), keyframe.id, keyframe.odom_from_keyframe};
+    else
+        located = known.relocaliser.locate(frame, known.motion, known.keyframes);
+    if (located) located->filtered = false;
+    return located;
+}
+
+std::optional<Track> PaperMethod::track(const PreparedFrame& frame, const Surroundings& known) {
+    std::vector<Feature> features = planar_features(frame);
+    const std::vector<PointTerm> matches =
+        match_terms(last_, features, frame, options_.max_descriptor_distance);
+    MotionRansacOptions ransac;
+    ransac.inlier_px = options_.inlier_sigmas * options_.pixel_sigma_px;
+    ransac.min_inliers = options_.min_inliers;
+    ransac.seed = options_.seed;
+    const std::optional<Pose> camera_from_last = ransac_motion(frame.camera->color, matches, ransac);
+    if (!camera_from_last) return std::nullopt;
+    std::optional<Track> track =
+        align_matches(frame.camera->color, matches, *camera_from_last, options_.min_inliers);
+    if (!track) return std::nullopt;
+    const Pose last_from_keyframe =
+        known.motion.odom_from_camera().inverse() * known.keyframes.current().odom_from_keyframe;
+    track->alignment.camera_from_keyframe = track->alignment.camera_from_keyframe * last_from_keyframe;
+    last_ = std::move(features);
+    return track;
+}
+
+std::vector<Feature> PaperMethod::planar_features(const PreparedFrame& frame) const {
+    std::vector<Feature> features = describe(*frame.gray, *frame.depth, *frame.camera,
+                                             options_.max_descriptors, options_.max_depth_spread);
+    put_on_regions(features, frame);
+    std::erase_if(features, [](const Feature& feature) { return feature.region < 0; });
+    return features;
+}
+
+void PaperMethod::go_on_from(PreparedFrame& frame, const LocalKeyframe&) {
+    if (frame.gray) last_ = planar_features(frame);
+}
+
+}  // namespace planemap::odometry
