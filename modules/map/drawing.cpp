@@ -11,7 +11,7 @@
 #include "map/export.hpp"
 #include "map/export_parts.hpp"
 
-namespace planemap {
+namespace planemap::map {
 
 namespace {
 
@@ -536,4 +536,4 @@ std::string perspective_svg(const PlaneMap& map, const Trajectory& trajectory) {
                 body + trajectory_line(trajectory, project) + (bar ? drawn_bar(*bar, project) : ""));
 }
 
-}  // namespace planemap
+}  // namespace planemap::map

@@ -5,7 +5,7 @@
 #include <bit>
 #include <cmath>
 
-namespace planemap {
+namespace planemap::map {
 
 namespace {
 
@@ -251,4 +251,4 @@ Outline EvidenceGrid::outline(const OutlineOptions& options) const {
     return simplified_without_crossings(outline, options.tolerance_m);
 }
 
-}  // namespace planemap
+}  // namespace planemap::map

@@ -10,7 +10,7 @@
 #include "core/pose.hpp"
 #include "map/bitmap.hpp"
 
-namespace planemap {
+namespace planemap::map {
 
 /// How a plane's shape is read off its evidence.
 struct OutlineOptions {
@@ -112,4 +112,4 @@ class EvidenceGrid {
     std::vector<std::uint64_t> flips_;  ///< scratch of add()
 };
 
-}  // namespace planemap
+}  // namespace planemap::map

@@ -9,7 +9,7 @@
 
 #include "map/export_parts.hpp"
 
-namespace planemap {
+namespace planemap::map {
 
 namespace {
 
@@ -180,4 +180,4 @@ std::string planes_ply(const PlaneMap& map, const Trajectory& trajectory) {
     return ply.bytes();
 }
 
-}  // namespace planemap
+}  // namespace planemap::map

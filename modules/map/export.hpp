@@ -10,7 +10,7 @@
 #include "core/plane_map.hpp"
 #include "core/trajectory.hpp"
 
-namespace planemap {
+namespace planemap::map {
 
 /// A colour that tells plane ids apart; the same in all exports.
 Rgb plane_color(int id);
@@ -68,4 +68,4 @@ std::string overhead_svg(const PlaneMap& map, const Trajectory& trajectory);
 /// overhead_svg().
 std::string perspective_svg(const PlaneMap& map, const Trajectory& trajectory);
 
-}  // namespace planemap
+}  // namespace planemap::map

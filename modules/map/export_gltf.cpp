@@ -6,7 +6,7 @@
 #include "map/export.hpp"
 #include "map/export_parts.hpp"
 
-namespace planemap {
+namespace planemap::map {
 
 namespace {
 
@@ -183,4 +183,4 @@ std::string planes_glb(const PlaneMap& map, const Trajectory& trajectory) {
     return scene.glb(root_node(upright_frame(map, trajectory)));
 }
 
-}  // namespace planemap
+}  // namespace planemap::map

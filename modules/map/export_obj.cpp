@@ -2,7 +2,7 @@
 #include "map/export.hpp"
 #include "map/export_parts.hpp"
 
-namespace planemap {
+namespace planemap::map {
 
 namespace {
 
@@ -57,4 +57,4 @@ std::string planes_mtl(const PlaneMap& map) {
     return text + "newmtl trajectory\n" + diffuse(kTrajectoryColor);
 }
 
-}  // namespace planemap
+}  // namespace planemap::map

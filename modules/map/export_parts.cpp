@@ -8,7 +8,7 @@
 
 #include "map/triangulation.hpp"
 
-namespace planemap {
+namespace planemap::map {
 
 std::string fixed(double value, int decimals) {
     std::array<char, 400> buffer;
@@ -149,4 +149,4 @@ std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> footprint(const MapPlan
     return joined;
 }
 
-}  // namespace planemap
+}  // namespace planemap::map

@@ -11,7 +11,7 @@
 #include "core/plane_map.hpp"
 #include "core/trajectory.hpp"
 
-namespace planemap {
+namespace planemap::map {
 
 /// A number with a fixed number of decimals, a point whatever the locale, and no negative zero.
 std::string fixed(double value, int decimals);
@@ -61,4 +61,4 @@ constexpr Rgb kTrajectoryColor{179, 20, 42};
 std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> footprint(const MapPlane& plane,
                                                                    const Eigen::Matrix3d& level_from_world);
 
-}  // namespace planemap
+}  // namespace planemap::map

@@ -7,7 +7,7 @@
 #include "map/export.hpp"
 #include "map/export_parts.hpp"
 
-namespace planemap {
+namespace planemap::map {
 
 namespace {
 
@@ -172,4 +172,4 @@ std::string floor_plan_geojson(const PlaneMap& map, const Trajectory& trajectory
     return text + "\n ]}\n";
 }
 
-}  // namespace planemap
+}  // namespace planemap::map

@@ -6,7 +6,7 @@
 
 #include "map/surface.hpp"
 
-namespace planemap {
+namespace planemap::map {
 
 namespace {
 
@@ -73,4 +73,4 @@ void hand_over(const StoredKeyframe& gone, const std::vector<StoredKeyframe*>& h
     }
 }
 
-}  // namespace planemap
+}  // namespace planemap::map

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-namespace planemap {
+namespace planemap::map {
 
 namespace {
 
@@ -232,4 +232,4 @@ void name_planes(PlaneMap& map, std::span<const Pose> world_from_camera, const L
     Namer(map, world_from_camera, *up, rules).name();
 }
 
-}  // namespace planemap
+}  // namespace planemap::map

@@ -13,7 +13,7 @@
 #include "map/hand_over.hpp"
 #include "map/labels.hpp"
 
-namespace planemap {
+namespace planemap::map {
 
 namespace {
 
@@ -931,7 +931,7 @@ std::map<int, std::vector<int>> PlaneMapper::sightings() const {
 
 std::size_t PlaneMapper::working_bytes() const {
     std::size_t bytes = poses_.size() * sizeof(std::pair<int, Pose>);
-    for (const auto& [id, keyframe] : keyframes_) bytes += planemap::memory_bytes(keyframe);
+    for (const auto& [id, keyframe] : keyframes_) bytes += map::memory_bytes(keyframe);
     for (const auto* group : {&set_.surfaces(), &fixed_})
         for (const Surface& surface : *group) bytes += sizeof surface + surface.grid.memory_bytes();
     for (const auto& [id, shape] : shapes_)
@@ -939,4 +939,4 @@ std::size_t PlaneMapper::working_bytes() const {
     return bytes;
 }
 
-}  // namespace planemap
+}  // namespace planemap::map

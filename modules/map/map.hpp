@@ -15,7 +15,7 @@
 #include "map/intersections.hpp"
 #include "map/surface.hpp"
 
-namespace planemap {
+namespace planemap::map {
 
 struct MapOptions {
     double merge_angle_deg = 10;     ///< largest angle between merged regions (paper section 2.3)
@@ -216,4 +216,4 @@ class PlaneMapper {
     bool settled_ = true;
 };
 
-}  // namespace planemap
+}  // namespace planemap::map

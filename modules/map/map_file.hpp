@@ -7,7 +7,7 @@
 
 #include "core/plane_map.hpp"
 
-namespace planemap {
+namespace planemap::map {
 
 /// The map as one event of an LCM log, on PLANEMAP_MAP.
 std::string plane_map_log(const PlaneMap& map);
@@ -20,4 +20,4 @@ void write_plane_map(const std::filesystem::path& file, const PlaneMap& map);
 /// reason if the file cannot be read, holds no map, is cut short, or the map does not make sense.
 PlaneMap read_plane_map(const std::filesystem::path& file);
 
-}  // namespace planemap
+}  // namespace planemap::map

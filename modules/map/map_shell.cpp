@@ -11,7 +11,7 @@
 #include "messages/convert.hpp"
 #include "messages/decode.hpp"
 
-namespace planemap {
+namespace planemap::map {
 
 namespace {
 constexpr std::int64_t kWritePeriodUs = 5000000;
@@ -138,4 +138,4 @@ void MapShell::write() {
     unwritten_ = false;
 }
 
-}  // namespace planemap
+}  // namespace planemap::map

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace planemap {
+namespace planemap::map {
 
 namespace {
 
@@ -241,4 +241,4 @@ std::size_t memory_bytes(const StoredKeyframe& keyframe) {
            keyframe.vertices.capacity() * sizeof(std::int16_t);
 }
 
-}  // namespace planemap
+}  // namespace planemap::map

@@ -10,7 +10,7 @@
 #include "core/keyframe.hpp"
 #include "map/evidence_grid.hpp"
 
-namespace planemap {
+namespace planemap::map {
 
 /// A planar region in 96 bytes and 4 a vertex of its outline, camera frame. Single precision about the
 /// region's own centre and axes: a micrometre at ten metres.
@@ -111,4 +111,4 @@ void outline_in(const Pose& a_from_box, const StoredRegion& region, const Stored
 /// Bytes it takes, by capacity.
 std::size_t memory_bytes(const StoredKeyframe& keyframe);
 
-}  // namespace planemap
+}  // namespace planemap::map

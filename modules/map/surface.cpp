@@ -8,7 +8,7 @@
 #include <queue>
 #include <tuple>
 
-namespace planemap {
+namespace planemap::map {
 
 namespace {
 
@@ -296,4 +296,4 @@ std::vector<std::size_t> SurfaceSet::merge(const std::vector<std::size_t>& grown
     return now;
 }
 
-}  // namespace planemap
+}  // namespace planemap::map

@@ -9,7 +9,7 @@
 #include "map/merging.hpp"
 #include "map/stored_keyframe.hpp"
 
-namespace planemap {
+namespace planemap::map {
 
 /// How far a set of points reaches in sixteen directions of its plane: its convex hull, to 2 %.
 class Extent {
@@ -109,4 +109,4 @@ class SurfaceSet {
     std::vector<Bounds> bounds_;
 };
 
-}  // namespace planemap
+}  // namespace planemap::map

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-namespace planemap {
+namespace planemap::map {
 
 namespace {
 
@@ -144,4 +144,4 @@ Triangulation triangulate(const Outline& outline) {
     return std::move(builder.result);
 }
 
-}  // namespace planemap
+}  // namespace planemap::map

@@ -7,7 +7,7 @@
 
 #include "map/scene.hpp"
 
-namespace planemap {
+namespace planemap::map {
 namespace {
 
 using scene::rectangle_ring;
@@ -180,4 +180,4 @@ TEST(RingsCross, TellsCrossingFromTouching) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::map

@@ -8,7 +8,7 @@
 #include "map/corner.hpp"
 #include "map/export.hpp"
 
-namespace planemap {
+namespace planemap::map {
 namespace {
 
 using scene::corner;
@@ -139,4 +139,4 @@ TEST(PlanesGlb, OfAnEmptyMapAndOfNan) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::map

@@ -9,7 +9,7 @@
 #include "map/corner.hpp"
 #include "map/export.hpp"
 
-namespace planemap {
+namespace planemap::map {
 namespace {
 
 using scene::corner;
@@ -98,4 +98,4 @@ TEST(PlanesObj, OfAnEmptyMapAndOfNan) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::map

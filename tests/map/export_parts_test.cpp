@@ -9,7 +9,7 @@
 #include "map/corner.hpp"
 #include "map/furniture.hpp"
 
-namespace planemap {
+namespace planemap::map {
 namespace {
 
 TEST(Fixed, WritesDecimalsAndNoNegativeZero) {
@@ -107,4 +107,4 @@ TEST(Footprint, JoinsWhatIsAboveOneAnotherAndKeepsGaps) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::map

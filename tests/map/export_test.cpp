@@ -11,7 +11,7 @@
 
 #include "map/corner.hpp"
 
-namespace planemap {
+namespace planemap::map {
 namespace {
 
 using scene::corner;
@@ -243,4 +243,4 @@ TEST(Drawings, OfAnEmptyMap) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::map

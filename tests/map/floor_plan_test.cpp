@@ -8,7 +8,7 @@
 #include "map/export.hpp"
 #include "map/furniture.hpp"
 
-namespace planemap {
+namespace planemap::map {
 namespace {
 
 using Json = nlohmann::json;
@@ -122,4 +122,4 @@ TEST(FloorPlan, OfNothingAndOfNan) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::map

@@ -9,7 +9,7 @@
 #include "core/plane_map.hpp"
 #include "map/scene.hpp"
 
-namespace planemap::scene {
+namespace planemap::map::scene {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
@@ -75,4 +75,4 @@ inline std::vector<Pose> moved(const Pose& world_from_room, std::vector<Pose> po
     return poses;
 }
 
-}  // namespace planemap::scene
+}  // namespace planemap::map::scene

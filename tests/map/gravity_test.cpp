@@ -8,7 +8,7 @@
 #include "core/random_values.hpp"
 #include "map/furniture.hpp"
 
-namespace planemap {
+namespace planemap::map {
 namespace {
 
 using scene::kDegree;
@@ -105,4 +105,4 @@ TEST(FindUp, LeavesOutWhatIsNotFinite) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::map

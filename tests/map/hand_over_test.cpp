@@ -5,7 +5,7 @@
 
 #include "map/scene.hpp"
 
-namespace planemap {
+namespace planemap::map {
 namespace {
 
 using scene::camera_at;
@@ -119,4 +119,4 @@ TEST(HandOver, WhatIsOnNoPlaneEnds) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::map

@@ -5,7 +5,7 @@
 
 #include "map/scene.hpp"
 
-namespace planemap {
+namespace planemap::map {
 namespace {
 
 using scene::facing;
@@ -93,4 +93,4 @@ TEST(Intersections, CrossingPlanesMeetInside) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::map

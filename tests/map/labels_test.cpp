@@ -8,7 +8,7 @@
 #include "core/random_values.hpp"
 #include "map/furniture.hpp"
 
-namespace planemap {
+namespace planemap::map {
 namespace {
 
 using scene::facing_down;
@@ -164,4 +164,4 @@ TEST(NamePlanes, LeavesOutWhatIsNotFinite) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::map

@@ -11,7 +11,7 @@
 #include "map/map.hpp"
 #include "map/queries.hpp"
 
-namespace planemap {
+namespace planemap::map {
 namespace {
 
 /// A storey of 40 x 30 m: rooms' walls, tables, shelves and floors, with ragged outlines of 32 vertices as
@@ -218,6 +218,6 @@ BENCHMARK(free_height)->Arg(300)->Unit(benchmark::kMicrosecond);
 BENCHMARK(gap)->Arg(300)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::map
 
 BENCHMARK_MAIN();

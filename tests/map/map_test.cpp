@@ -12,7 +12,7 @@
 
 #include "map/scene.hpp"
 
-namespace planemap {
+namespace planemap::map {
 namespace {
 
 using scene::camera_at;
@@ -702,4 +702,4 @@ TEST(MapOptions, NamesAllBadFields) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::map

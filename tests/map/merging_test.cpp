@@ -7,7 +7,7 @@
 
 #include "map/scene.hpp"
 
-namespace planemap {
+namespace planemap::map {
 namespace {
 
 using scene::facing;
@@ -92,4 +92,4 @@ TEST(Merging, BoxesWithoutExtentAreCompared) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::map

@@ -7,7 +7,7 @@
 #include "core/random_values.hpp"
 #include "map/furniture.hpp"
 
-namespace planemap {
+namespace planemap::map {
 namespace {
 
 using scene::kDegree;
@@ -265,4 +265,4 @@ TEST(MapQueries, OfDegenerateMaps) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::map

@@ -7,7 +7,7 @@
 
 #include "map/scene.hpp"
 
-namespace planemap {
+namespace planemap::map {
 namespace {
 
 using scene::facing;
@@ -80,4 +80,4 @@ TEST(Sight, IgnoresWhatReachesBehindTheCamera) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::map

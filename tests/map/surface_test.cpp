@@ -8,7 +8,7 @@
 
 #include "map/scene.hpp"
 
-namespace planemap {
+namespace planemap::map {
 namespace {
 
 using scene::facing;
@@ -137,4 +137,4 @@ TEST(SurfaceSet, DoesNotGrowBeyondTheLargestExtent) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::map

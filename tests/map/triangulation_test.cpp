@@ -7,7 +7,7 @@
 #include <numbers>
 #include <random>
 
-namespace planemap {
+namespace planemap::map {
 namespace {
 
 double covered(const Triangulation& t) {
@@ -90,4 +90,4 @@ TEST(Triangulation, OfNothing) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::map

@@ -70,12 +70,13 @@ std::int64_t tracked_frames(const Pipeline& pipeline) {
 }
 
 std::vector<Result> essential_results(Pipeline& pipeline) {
-    const PlaneMapper& mapper = pipeline.map().mapper();
+    const map::PlaneMapper& mapper = pipeline.map().mapper();
     return {
-        {"plane_map.lcmlog", [&mapper](const auto& file) { write_plane_map(file, mapper.map()); }},
+        {"plane_map.lcmlog", [&mapper](const auto& file) { map::write_plane_map(file, mapper.map()); }},
         {"trajectory.txt", [&pipeline](const auto& file) { write_trajectory(file, pipeline.trajectory()); }},
-        {"planes.json",
-         [&mapper](const auto& file) { write_file(file, planes_json(mapper.map(), mapper.sightings())); }}};
+        {"planes.json", [&mapper](const auto& file) {
+             write_file(file, map::planes_json(mapper.map(), mapper.sightings()));
+         }}};
 }
 
 namespace {
@@ -127,13 +128,14 @@ std::vector<Result> further_results(const Input& input, Pipeline& pipeline, cons
         add("report.md", [&report] { return report_markdown(report); });
     }
     for (Result& truth : input.truth_results()) results.push_back(std::move(truth));
-    add("planes.ply", [&map, &pipeline] { return planes_ply(map, pipeline.trajectory()); });
-    add("planes.obj", [&map, &pipeline] { return planes_obj(map, pipeline.trajectory()); });
-    add("planes.mtl", [&map] { return planes_mtl(map); });
-    add("planes.glb", [&map, &pipeline] { return planes_glb(map, pipeline.trajectory()); });
-    add("floor_plan.geojson", [&map, &pipeline] { return floor_plan_geojson(map, pipeline.trajectory()); });
-    add("overhead.svg", [&map, &pipeline] { return overhead_svg(map, pipeline.trajectory()); });
-    add("map.svg", [&map, &pipeline] { return perspective_svg(map, pipeline.trajectory()); });
+    add("planes.ply", [&map, &pipeline] { return map::planes_ply(map, pipeline.trajectory()); });
+    add("planes.obj", [&map, &pipeline] { return map::planes_obj(map, pipeline.trajectory()); });
+    add("planes.mtl", [&map] { return map::planes_mtl(map); });
+    add("planes.glb", [&map, &pipeline] { return map::planes_glb(map, pipeline.trajectory()); });
+    add("floor_plan.geojson",
+        [&map, &pipeline] { return map::floor_plan_geojson(map, pipeline.trajectory()); });
+    add("overhead.svg", [&map, &pipeline] { return map::overhead_svg(map, pipeline.trajectory()); });
+    add("map.svg", [&map, &pipeline] { return map::perspective_svg(map, pipeline.trajectory()); });
     if (pipeline.octomap() != nullptr)
         add("octomap.bt", [&pipeline] { return pipeline.octomap()->builder().bt(); });
     return results;
@@ -146,7 +148,7 @@ bool holds_planes(const std::filesystem::path& folder) {
     std::error_code ignored;
     if (!std::filesystem::exists(file, ignored)) return false;
     try {
-        return !read_plane_map(file).planes.empty();
+        return !map::read_plane_map(file).planes.empty();
     } catch (const std::exception&) {
         return true;
     }
