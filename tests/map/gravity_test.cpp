@@ -5,8 +5,8 @@
 
 #include <limits>
 
+#include "core/furniture.hpp"
 #include "core/random_values.hpp"
-#include "map/furniture.hpp"
 
 namespace planemap::map {
 namespace {

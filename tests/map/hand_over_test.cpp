@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "map/scene.hpp"
+#include "core/scene.hpp"
 
 namespace planemap::map {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <memory>
 
+#include "core/furniture.hpp"
 #include "core/random_values.hpp"
-#include "map/furniture.hpp"
 #include "map/labels.hpp"
 #include "map/map.hpp"
 #include "map/queries.hpp"

@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 #include "core/files.hpp"
-#include "map/scene.hpp"
+#include "core/scene.hpp"
 #include "messages/log.hpp"
 
 namespace planemap::map {

@@ -10,7 +10,7 @@
 #include <random>
 #include <set>
 
-#include "map/scene.hpp"
+#include "core/scene.hpp"
 
 namespace planemap::map {
 namespace {

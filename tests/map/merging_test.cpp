@@ -5,7 +5,7 @@
 
 #include <numbers>
 
-#include "map/scene.hpp"
+#include "core/scene.hpp"
 
 namespace planemap::map {
 namespace {

@@ -4,8 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/furniture.hpp"
 #include "core/random_values.hpp"
-#include "map/furniture.hpp"
 
 namespace planemap::map {
 namespace {

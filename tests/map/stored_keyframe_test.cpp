@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "map/scene.hpp"
+#include "core/scene.hpp"
 
 namespace planemap::map {
 namespace {

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <random>
 
-#include "map/scene.hpp"
+#include "core/scene.hpp"
 
 namespace planemap::map {
 namespace {

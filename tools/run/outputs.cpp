@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/files.hpp"
-#include "map/export.hpp"
+#include "exports/exports.hpp"
 #include "map/map_file.hpp"
 #include "run/accuracy.hpp"
 #include "run/input.hpp"
@@ -75,7 +75,7 @@ std::vector<Result> essential_results(Pipeline& pipeline) {
         {"plane_map.lcmlog", [&mapper](const auto& file) { map::write_plane_map(file, mapper.map()); }},
         {"trajectory.txt", [&pipeline](const auto& file) { write_trajectory(file, pipeline.trajectory()); }},
         {"planes.json", [&mapper](const auto& file) {
-             write_file(file, map::planes_json(mapper.map(), mapper.sightings()));
+             write_file(file, exports::planes_json(mapper.map(), mapper.sightings()));
          }}};
 }
 
@@ -128,14 +128,14 @@ std::vector<Result> further_results(const Input& input, Pipeline& pipeline, cons
         add("report.md", [&report] { return report_markdown(report); });
     }
     for (Result& truth : input.truth_results()) results.push_back(std::move(truth));
-    add("planes.ply", [&map, &pipeline] { return map::planes_ply(map, pipeline.trajectory()); });
-    add("planes.obj", [&map, &pipeline] { return map::planes_obj(map, pipeline.trajectory()); });
-    add("planes.mtl", [&map] { return map::planes_mtl(map); });
-    add("planes.glb", [&map, &pipeline] { return map::planes_glb(map, pipeline.trajectory()); });
+    add("planes.ply", [&map, &pipeline] { return exports::planes_ply(map, pipeline.trajectory()); });
+    add("planes.obj", [&map, &pipeline] { return exports::planes_obj(map, pipeline.trajectory()); });
+    add("planes.mtl", [&map] { return exports::planes_mtl(map); });
+    add("planes.glb", [&map, &pipeline] { return exports::planes_glb(map, pipeline.trajectory()); });
     add("floor_plan.geojson",
-        [&map, &pipeline] { return map::floor_plan_geojson(map, pipeline.trajectory()); });
-    add("overhead.svg", [&map, &pipeline] { return map::overhead_svg(map, pipeline.trajectory()); });
-    add("map.svg", [&map, &pipeline] { return map::perspective_svg(map, pipeline.trajectory()); });
+        [&map, &pipeline] { return exports::floor_plan_geojson(map, pipeline.trajectory()); });
+    add("overhead.svg", [&map, &pipeline] { return exports::overhead_svg(map, pipeline.trajectory()); });
+    add("map.svg", [&map, &pipeline] { return exports::perspective_svg(map, pipeline.trajectory()); });
     if (pipeline.octomap() != nullptr)
         add("octomap.bt", [&pipeline] { return pipeline.octomap()->builder().bt(); });
     return results;

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "map/export_parts.hpp"
+#include "exports/parts.hpp"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
+#include "core/furniture.hpp"
 #include "core/random_values.hpp"
-#include "map/corner.hpp"
-#include "map/furniture.hpp"
+#include "exports/corner.hpp"
 
-namespace planemap::map {
+namespace planemap::exports {
 namespace {
 
 TEST(Fixed, WritesDecimalsAndNoNegativeZero) {
@@ -106,5 +106,12 @@ TEST(Footprint, JoinsWhatIsAboveOneAnotherAndKeepsGaps) {
     EXPECT_NEAR(pieces[1].second.y(), 3, 1e-3);
 }
 
+TEST(PlaneColor, TellsNeighbouringIdsApart) {
+    for (int id = -2; id < 100; ++id) {
+        const Rgb a = plane_color(id), b = plane_color(id + 1);
+        EXPECT_GT(std::abs(a.r - b.r) + std::abs(a.g - b.g) + std::abs(a.b - b.b), 60) << id;
+    }
+}
+
 }  // namespace
-}  // namespace planemap::map
+}  // namespace planemap::exports

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "map/export.hpp"
-#include "map/export_parts.hpp"
+#include "exports/exports.hpp"
+#include "exports/parts.hpp"
 
-namespace planemap::map {
+namespace planemap::exports {
 
 namespace {
 
@@ -57,4 +57,4 @@ std::string planes_mtl(const PlaneMap& map) {
     return text + "newmtl trajectory\n" + diffuse(kTrajectoryColor);
 }
 
-}  // namespace planemap::map
+}  // namespace planemap::exports

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "core/plane_map.hpp"
-#include "map/scene.hpp"
+#include "core/scene.hpp"
 
-namespace planemap::map::scene {
+namespace planemap::scene {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
@@ -75,4 +75,4 @@ inline std::vector<Pose> moved(const Pose& world_from_room, std::vector<Pose> po
     return poses;
 }
 
-}  // namespace planemap::map::scene
+}  // namespace planemap::scene

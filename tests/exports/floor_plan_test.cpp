@@ -4,11 +4,11 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "core/furniture.hpp"
 #include "core/random_values.hpp"
-#include "map/export.hpp"
-#include "map/furniture.hpp"
+#include "exports/exports.hpp"
 
-namespace planemap::map {
+namespace planemap::exports {
 namespace {
 
 using Json = nlohmann::json;
@@ -122,4 +122,4 @@ TEST(FloorPlan, OfNothingAndOfNan) {
 }
 
 }  // namespace
-}  // namespace planemap::map
+}  // namespace planemap::exports

@@ -6,14 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "core/image.hpp"
 #include "core/plane_map.hpp"
 #include "core/trajectory.hpp"
 
-namespace planemap::map {
-
-/// A colour that tells plane ids apart; the same in all exports.
-Rgb plane_color(int id);
+namespace planemap::exports {
 
 /// Ids of the keyframes that saw each plane, by the plane's id; both ascending.
 using Sightings = std::map<int, std::vector<int>>;
@@ -68,4 +64,4 @@ std::string overhead_svg(const PlaneMap& map, const Trajectory& trajectory);
 /// overhead_svg().
 std::string perspective_svg(const PlaneMap& map, const Trajectory& trajectory);
 
-}  // namespace planemap::map
+}  // namespace planemap::exports

@@ -3,10 +3,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "map/export.hpp"
-#include "map/export_parts.hpp"
+#include "exports/exports.hpp"
+#include "exports/parts.hpp"
 
-namespace planemap::map {
+namespace planemap::exports {
 
 namespace {
 
@@ -183,4 +183,4 @@ std::string planes_glb(const PlaneMap& map, const Trajectory& trajectory) {
     return scene.glb(root_node(upright_frame(map, trajectory)));
 }
 
-}  // namespace planemap::map
+}  // namespace planemap::exports

@@ -5,10 +5,10 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "map/corner.hpp"
-#include "map/export.hpp"
+#include "exports/corner.hpp"
+#include "exports/exports.hpp"
 
-namespace planemap::map {
+namespace planemap::exports {
 namespace {
 
 using scene::corner;
@@ -139,4 +139,4 @@ TEST(PlanesGlb, OfAnEmptyMapAndOfNan) {
 }
 
 }  // namespace
-}  // namespace planemap::map
+}  // namespace planemap::exports

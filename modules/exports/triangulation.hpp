@@ -6,7 +6,7 @@
 
 #include "core/outline.hpp"
 
-namespace planemap::map {
+namespace planemap::exports {
 
 /// Triangles that cover an outline's area once. Vertices that are not the outline's lie on its edges.
 struct Triangulation {
@@ -20,4 +20,4 @@ struct Triangulation {
 /// vertices.
 Triangulation triangulate(const Outline& outline);
 
-}  // namespace planemap::map
+}  // namespace planemap::exports

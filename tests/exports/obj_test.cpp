@@ -6,10 +6,10 @@
 #include <map>
 #include <sstream>
 
-#include "map/corner.hpp"
-#include "map/export.hpp"
+#include "exports/corner.hpp"
+#include "exports/exports.hpp"
 
-namespace planemap::map {
+namespace planemap::exports {
 namespace {
 
 using scene::corner;
@@ -98,4 +98,4 @@ TEST(PlanesObj, OfAnEmptyMapAndOfNan) {
 }
 
 }  // namespace
-}  // namespace planemap::map
+}  // namespace planemap::exports

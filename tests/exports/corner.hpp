@@ -6,10 +6,10 @@
 #include <string>
 
 #include "core/plane_map.hpp"
+#include "core/scene.hpp"
 #include "core/trajectory.hpp"
-#include "map/scene.hpp"
 
-namespace planemap::map::scene {
+namespace planemap::scene {
 
 inline MapPlane plane_of(int id, const Rectangle& rectangle) {
     return {id, region_of(rectangle, Pose::Identity()), 2};
@@ -73,4 +73,4 @@ inline Eigen::Vector3d expected_up(const PlaneMap& map, const Trajectory& trajec
     return -trajectory.front().world_from_camera.linear().col(1);
 }
 
-}  // namespace planemap::map::scene
+}  // namespace planemap::scene

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "map/export_parts.hpp"
+#include "exports/parts.hpp"
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <numbers>
 
-#include "map/triangulation.hpp"
+#include "exports/triangulation.hpp"
 
-namespace planemap::map {
+namespace planemap::exports {
 
 std::string fixed(double value, int decimals) {
     std::array<char, 400> buffer;
@@ -18,6 +18,17 @@ std::string fixed(double value, int decimals) {
     std::string text(buffer.data(), end);
     if (text[0] == '-' && text.find_first_not_of("-0.") == std::string::npos) text.erase(0, 1);
     return text;
+}
+
+Rgb plane_color(int id) {
+    // Hues a golden angle apart, in three shades: neighbouring ids never look alike.
+    const double hue = std::fmod(id * 0.6180339887498949, 1.0) + (id < 0 ? 1 : 0);
+    const double value = std::array{0.92, 0.78, 0.85}[static_cast<std::size_t>(std::abs(id % 3))];
+    const auto channel = [&](double offset) {
+        const double wave = 0.5 + 0.5 * std::cos(2 * std::numbers::pi * (hue - offset));
+        return static_cast<std::uint8_t>(std::lround(255 * value * (0.42 + 0.58 * wave)));
+    };
+    return {channel(0), channel(1.0 / 3), channel(2.0 / 3)};
 }
 
 std::string plane_name(const MapPlane& plane) {
@@ -149,4 +160,4 @@ std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> footprint(const MapPlan
     return joined;
 }
 
-}  // namespace planemap::map
+}  // namespace planemap::exports

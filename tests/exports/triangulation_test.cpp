@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "map/triangulation.hpp"
+#include "exports/triangulation.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <numbers>
 #include <random>
 
-namespace planemap::map {
+namespace planemap::exports {
 namespace {
 
 double covered(const Triangulation& t) {
@@ -90,4 +90,4 @@ TEST(Triangulation, OfNothing) {
 }
 
 }  // namespace
-}  // namespace planemap::map
+}  // namespace planemap::exports

@@ -7,7 +7,7 @@
 
 #include "core/keyframe.hpp"
 
-namespace planemap::map::scene {
+namespace planemap::scene {
 
 /// A rectangle in the world: x and y of its frame along the sides, z the side that is seen.
 struct Rectangle {
@@ -86,4 +86,4 @@ inline Pose camera_at(const Eigen::Vector3d& position, double turn = 0) {
                      Eigen::Quaterniond(Eigen::AngleAxisd(turn, Eigen::Vector3d(0.3, 1, 0.2).normalized())));
 }
 
-}  // namespace planemap::map::scene
+}  // namespace planemap::scene

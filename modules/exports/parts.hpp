@@ -11,10 +11,13 @@
 #include "core/plane_map.hpp"
 #include "core/trajectory.hpp"
 
-namespace planemap::map {
+namespace planemap::exports {
 
 /// A number with a fixed number of decimals, a point whatever the locale, and no negative zero.
 std::string fixed(double value, int decimals);
+
+/// A colour that tells plane ids apart; the same in all exports.
+Rgb plane_color(int id);
 
 /// "plane_3_wall".
 std::string plane_name(const MapPlane& plane);
@@ -61,4 +64,4 @@ constexpr Rgb kTrajectoryColor{179, 20, 42};
 std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> footprint(const MapPlane& plane,
                                                                    const Eigen::Matrix3d& level_from_world);
 
-}  // namespace planemap::map
+}  // namespace planemap::exports

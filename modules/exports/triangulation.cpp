@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "map/triangulation.hpp"
+#include "exports/triangulation.hpp"
 
 #include <algorithm>
 #include <map>
 #include <numeric>
 #include <utility>
 
-namespace planemap::map {
+namespace planemap::exports {
 
 namespace {
 
@@ -144,4 +144,4 @@ Triangulation triangulate(const Outline& outline) {
     return std::move(builder.result);
 }
 
-}  // namespace planemap::map
+}  // namespace planemap::exports

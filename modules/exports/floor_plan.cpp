@@ -4,10 +4,10 @@
 #include <nlohmann/json.hpp>
 
 #include "core/outline_index.hpp"
-#include "map/export.hpp"
-#include "map/export_parts.hpp"
+#include "exports/exports.hpp"
+#include "exports/parts.hpp"
 
-namespace planemap::map {
+namespace planemap::exports {
 
 namespace {
 
@@ -172,4 +172,4 @@ std::string floor_plan_geojson(const PlaneMap& map, const Trajectory& trajectory
     return text + "\n ]}\n";
 }
 
-}  // namespace planemap::map
+}  // namespace planemap::exports
