@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "map/surface.hpp"
+#include "map/plane_estimate.hpp"
 
 namespace planemap::map {
 

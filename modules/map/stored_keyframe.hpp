@@ -12,6 +12,12 @@
 
 namespace planemap::map {
 
+/// Further from the world's origin, doubles no longer hold second moments to a millimetre.
+constexpr double kMaxCoordinate_m = 1e5;
+inline bool is_near_origin(const Eigen::Vector3d& p_world) {
+    return p_world.norm() <= kMaxCoordinate_m;  // not NaN
+}
+
 /// A planar region in 96 bytes and 4 a vertex of its outline, camera frame. Single precision about the
 /// region's own centre and axes: a micrometre at ten metres.
 struct StoredRegion {

@@ -167,7 +167,7 @@ void name(benchmark::State& state) {
     PlaneMap map = storey(static_cast<int>(state.range(0)));
     const std::vector<Pose> poses = scene::looking_around(1.4, 0.3);
     for (auto _ : state) {
-        name_planes(map, poses);
+        label_planes(map, poses);
         benchmark::DoNotOptimize(map);
     }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "map/surface.hpp"
+#include "map/plane_set.hpp"
 
 #include <gtest/gtest.h>
 
@@ -17,17 +17,17 @@ using scene::Rectangle;
 constexpr double kDeg = std::numbers::pi / 180;
 const MergeRules kRules{10 * kDeg, 0.05, 0.5};
 
-Surface surface_of(const Rectangle& rectangle, int id, const Reliability& reliability = {}) {
+PlaneEstimate surface_of(const Rectangle& rectangle, int id, const Reliability& reliability = {}) {
     const StoredKeyframe keyframe = stored(0, {scene::region_of(rectangle, Pose::Identity(), 0.05)});
     FlatPolygon polygon;
     outline_in(Pose::Identity(), keyframe.regions[0], keyframe, polygon);
-    Surface surface(PlacedRegion(Pose::Identity(), keyframe.regions[0]), polygon, reliability);
+    PlaneEstimate surface(PlacedRegion(Pose::Identity(), keyframe.regions[0]), polygon, reliability);
     surface.id = id;
     surface.grid = EvidenceGrid(surface.box.frame_from_box, 0.025);
     return surface;
 }
 
-void add(Surface& surface, const Rectangle& rectangle, const Reliability& reliability) {
+void add(PlaneEstimate& surface, const Rectangle& rectangle, const Reliability& reliability) {
     const StoredKeyframe keyframe = stored(0, {scene::region_of(rectangle, Pose::Identity(), 0.05)});
     const PlacedRegion placed(Pose::Identity(), keyframe.regions[0]);
     FlatPolygon polygon;
@@ -58,8 +58,8 @@ TEST(Extent, HoldsItsPointsTightly) {
     for (const auto& p : points) EXPECT_LT(distance({{ring}}, p), 1e-9);
 }
 
-TEST(Surface, TheBoxHoldsAllRegions) {
-    Surface surface = surface_of(wall_at(0, 0, 3), 1);
+TEST(PlaneEstimate, TheBoxHoldsAllRegions) {
+    PlaneEstimate surface = surface_of(wall_at(0, 0, 3), 1);
     add(surface, wall_at(2, 0.2, 3), {});
     EXPECT_NEAR(surface.box.half_extents.x(), 1.5, 0.06);
     EXPECT_NEAR(surface.low.x(), -0.5, 0.12);
@@ -67,25 +67,25 @@ TEST(Surface, TheBoxHoldsAllRegions) {
     EXPECT_NEAR(surface.low.z(), 3, 1e-3);
 }
 
-TEST(Surface, WhatLiesOffHardlyPullsThePlaneAlong) {
+TEST(PlaneEstimate, WhatLiesOffHardlyPullsThePlaneAlong) {
     // A second plate of the same size 4 cm behind: a plain fit would go half way.
     const Reliability good{1, 0.01};
-    Surface surface = surface_of(wall_at(0, 0, 3), 1, good);
+    PlaneEstimate surface = surface_of(wall_at(0, 0, 3), 1, good);
     add(surface, wall_at(0.3, 0, 3.04), good);
     EXPECT_LT(std::abs(surface.plane.signed_distance({0, 0, 3})), 0.003);
     EXPECT_EQ(surface.moments.count, 800) << "the moments stay exact";
     // Where views may be off by as much, both count alike.
     const Reliability poor{1, 1};
-    Surface even = surface_of(wall_at(0, 0, 3), 1, poor);
+    PlaneEstimate even = surface_of(wall_at(0, 0, 3), 1, poor);
     add(even, wall_at(0.3, 0, 3.04), poor);
     EXPECT_NEAR(std::abs(even.plane.signed_distance({0.15, 0, 3})), 0.02, 0.001);
 }
 
-TEST(Surface, OfAMapPlaneIsThatPlane) {
+TEST(PlaneEstimate, OfAMapPlaneIsThatPlane) {
     const Rectangle wall{
         facing({3, -2, 1}, {0.3, 1, 0.1}, {0, 0, 1}), 1.5, 1, {scene::rectangle_ring(-0.5, -0.5, 0.3, 0.4)}};
     const MapPlane plane(5, scene::region_of(wall, Pose::Identity(), 0.05, 0.003), 12);
-    const Surface surface(plane, 0.025);
+    const PlaneEstimate surface(plane, 0.025);
     EXPECT_EQ(surface.id, 5);
     EXPECT_EQ(surface.keyframes, 12);
     EXPECT_LT(angle_between(surface.plane.normal, plane.plane().normal), 1e-6);
@@ -94,10 +94,10 @@ TEST(Surface, OfAMapPlaneIsThatPlane) {
     EXPECT_NEAR(surface.moments.count, static_cast<double>(plane.inliers), 1e-3);
 }
 
-TEST(SurfaceSet, AfterMergingNoPairSatisfiesTheRules) {
+TEST(PlaneSet, AfterMergingNoPairSatisfiesTheRules) {
     std::mt19937_64 random(8);
     std::uniform_real_distribution<double> at(-3, 3), tilt(-0.2, 0.2), size(0.1, 0.6);
-    SurfaceSet set(kRules, 200);
+    PlaneSet set(kRules, 200);
     std::vector<std::size_t> all;
     double points = 0;
     for (int i = 0; i < 60; ++i) {
@@ -107,10 +107,10 @@ TEST(SurfaceSet, AfterMergingNoPairSatisfiesTheRules) {
                           size(random),
                           {}};
         all.push_back(set.push_back(surface_of(r, i)));
-        points += set.surfaces().back().moments.count;
+        points += set.estimates().back().moments.count;
     }
     const std::vector<std::size_t> now = set.merge(all);
-    const auto& surfaces = set.surfaces();
+    const auto& surfaces = set.estimates();
     EXPECT_LT(surfaces.size(), 60u);
     EXPECT_GT(surfaces.size(), 1u);
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
@@ -127,13 +127,13 @@ TEST(SurfaceSet, AfterMergingNoPairSatisfiesTheRules) {
     for (std::size_t i = 0; i < surfaces.size(); ++i) EXPECT_EQ(surfaces[i].id, oldest[i]);
 }
 
-TEST(SurfaceSet, DoesNotGrowBeyondTheLargestExtent) {
-    SurfaceSet set(kRules, 5);
+TEST(PlaneSet, DoesNotGrowBeyondTheLargestExtent) {
+    PlaneSet set(kRules, 5);
     set.push_back(surface_of(wall_at(0, 0, 3), 0));
     for (int i = 1; i < 10; ++i) set.push_back(surface_of(wall_at(i, 0, 3), i));
     set.merge({0, 1, 2, 3, 4, 5, 6, 7, 8, 9});
-    EXPECT_GT(set.surfaces().size(), 1u);
-    for (const Surface& surface : set.surfaces()) EXPECT_LT(surface.box.half_extents.x(), 2.6);
+    EXPECT_GT(set.estimates().size(), 1u);
+    for (const PlaneEstimate& surface : set.estimates()) EXPECT_LT(surface.box.half_extents.x(), 2.6);
 }
 
 }  // namespace

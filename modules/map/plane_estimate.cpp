@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "map/surface.hpp"
+#include "map/plane_estimate.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
-#include <queue>
-#include <tuple>
 
 namespace planemap::map {
 
 namespace {
 
-/// A surface whose plane turned further than this against its frames gets new ones.
+/// An estimate whose plane turned further than this against its frames gets new ones.
 constexpr double kMaxTilt = 0.9994;  // cosine of 2 deg
 
 Moments scaled(const Moments& moments, double factor) {
@@ -65,14 +62,15 @@ std::array<Eigen::Vector2d, Extent::kDirections> Extent::corners() const {
     return corners;
 }
 
-Surface::Surface(const PlacedRegion& region, const FlatPolygon& outline_box, const Reliability& reliability)
+PlaneEstimate::PlaneEstimate(const PlacedRegion& region, const FlatPolygon& outline_box,
+                             const Reliability& reliability)
     : plane(region.plane), world_from_extent(region.box.frame_from_box) {
     long_axis_ = region.box.frame_from_box.linear().col(0);
     add(region, outline_box, reliability);
     refit();
 }
 
-Surface::Surface(const MapPlane& map_plane, double cell_m)
+PlaneEstimate::PlaneEstimate(const MapPlane& map_plane, double cell_m)
     : id(map_plane.id),
       plane(map_plane.plane()),
       world_from_extent(map_plane.world_from_plane()),
@@ -100,8 +98,8 @@ Surface::Surface(const MapPlane& map_plane, double cell_m)
     refit();
 }
 
-void Surface::add(const PlacedRegion& region, const FlatPolygon& outline_extent,
-                  const Reliability& reliability) {
+void PlaneEstimate::add(const PlacedRegion& region, const FlatPolygon& outline_extent,
+                        const Reliability& reliability) {
     moments += region.moments;
     const double agreement = 1 + misfit2(region, plane) / std::pow(2 * reliability.sigma_m, 2);
     const Moments w = scaled(region.moments, reliability.weight / (agreement * agreement));
@@ -116,7 +114,7 @@ void Surface::add(const PlacedRegion& region, const FlatPolygon& outline_extent,
     }
 }
 
-void Surface::absorb(const Surface& other) {
+void PlaneEstimate::absorb(const PlaneEstimate& other) {
     moments += other.moments;
     weighted += other.weighted;
     facing += other.facing;
@@ -132,11 +130,11 @@ void Surface::absorb(const Surface& other) {
     } else {
         grid.add(other.grid);
     }
-    unshown = 1 << 20;
+    changed_cells = kAllCells;
     refit();
 }
 
-void Surface::refit() {
+void PlaneEstimate::refit() {
     const PlaneFit fit = fit_plane(weighted);
     if (fit.valid) {
         plane = fit.plane;
@@ -163,12 +161,17 @@ void Surface::refit() {
         EvidenceGrid turned(level, grid.cell_m());
         turned.add(grid);
         grid = std::move(turned);
-        unshown = 1 << 20;
+        changed_cells = kAllCells;
     }
     rebox();
 }
 
-void Surface::rebox() {
+void PlaneEstimate::count_keyframe(int id, int with_handed_on) {
+    if (last_keyframe != id) keyframes += with_handed_on;
+    last_keyframe = id;
+}
+
+void PlaneEstimate::rebox() {
     const Eigen::Matrix3d axes = plane_axes(plane.normal, long_axis_);
     const Eigen::Matrix<double, 2, 3> flat = axes.leftCols<2>().transpose();
     const Eigen::Matrix2d turn = flat * world_from_extent.linear().leftCols<2>();
@@ -186,114 +189,6 @@ void Surface::rebox() {
     const Eigen::Vector3d reach = axes.col(0).cwiseAbs() * half.x() + axes.col(1).cwiseAbs() * half.y();
     low = box.frame_from_box.translation() - reach;
     high = box.frame_from_box.translation() + reach;
-}
-
-SurfaceSet::SurfaceSet(const MergeRules& rules, double max_extent_m)
-    : rules_(rules), cosine_(std::cos(rules.angle_rad)), max_extent_m_(max_extent_m) {}
-
-SurfaceSet::Bounds SurfaceSet::bounds_of(const Surface& surface) {
-    return {surface.plane.normal, surface.low, surface.high, surface.plane.d};
-}
-
-std::size_t SurfaceSet::push_back(Surface surface) {
-    bounds_.push_back(bounds_of(surface));
-    surfaces_.push_back(std::move(surface));
-    return surfaces_.size() - 1;
-}
-
-void SurfaceSet::update(std::size_t i) {
-    bounds_[i] = bounds_of(surfaces_[i]);
-}
-
-bool SurfaceSet::may_touch(const Bounds& a, const Bounds& b) const {
-    if (a.normal.dot(b.normal) < cosine_) return false;
-    const double gap = rules_.gap_m + rules_.distance_m;
-    return ((a.low.array() <= b.high.array() + gap) && (b.low.array() <= a.high.array() + gap)).all();
-}
-
-std::optional<RegionRelation> SurfaceSet::relation(const Surface& a, const Surface& b) const {
-    const double apart = (a.box.frame_from_box.translation() - b.box.frame_from_box.translation()).norm();
-    if (apart + a.box.half_extents.norm() + b.box.half_extents.norm() > max_extent_m_) return std::nullopt;
-    return same_plane(a.plane, a.box, b.plane, b.box, rules_);
-}
-
-std::size_t SurfaceSet::partner_of(const PlacedRegion& region) const {
-    const Eigen::Matrix3d& axes = region.box.frame_from_box.linear();
-    const Eigen::Vector3d reach = axes.col(0).cwiseAbs() * region.box.half_extents.x() +
-                                  axes.col(1).cwiseAbs() * region.box.half_extents.y();
-    const Eigen::Vector3d center = region.box.frame_from_box.translation();
-    const Bounds bounds{region.plane.normal, center - reach, center + reach, region.plane.d};
-    std::size_t best = none();
-    double best_score = 0;
-    for (std::size_t i = 0; i < bounds_.size(); ++i) {
-        if (!may_touch(bounds, bounds_[i])) continue;
-        const Surface& surface = surfaces_[i];
-        const double length = (center - surface.box.frame_from_box.translation()).norm() +
-                              region.box.half_extents.norm() + surface.box.half_extents.norm();
-        if (length > max_extent_m_) continue;
-        const auto relation = same_plane(region.plane, region.box, surface.plane, surface.box, rules_);
-        if (!relation) continue;
-        const double score = relation->score(rules_);
-        if (best == none() || score < best_score) {
-            best = i;
-            best_score = score;
-        }
-    }
-    return best;
-}
-
-std::vector<std::size_t> SurfaceSet::merge(const std::vector<std::size_t>& grown) {
-    // Pairs by score; a pair counts while neither of the two has changed.
-    using Pair = std::tuple<double, std::size_t, std::size_t, int, int>;
-    std::priority_queue<Pair, std::vector<Pair>, std::greater<>> pairs;
-    std::vector<int> version(surfaces_.size(), 0);
-    std::vector<std::size_t> into(surfaces_.size());
-    std::iota(into.begin(), into.end(), std::size_t{0});
-    std::vector<char> asked(surfaces_.size(), 0);
-    const auto ask = [&](std::size_t i) {
-        for (std::size_t j = 0; j < surfaces_.size(); ++j) {
-            if (j == i || into[j] != j || asked[j] != 0 || !may_touch(bounds_[i], bounds_[j])) continue;
-            const auto [a, b] = std::minmax(i, j);
-            if (const auto r = relation(surfaces_[a], surfaces_[b]))
-                pairs.emplace(r->score(rules_), a, b, version[a], version[b]);
-        }
-    };
-    for (const std::size_t i : grown) {
-        ask(i);
-        asked[i] = 1;  // its pairs are known
-    }
-    asked.assign(surfaces_.size(), 0);
-    while (!pairs.empty()) {
-        const auto [score, a, b, version_a, version_b] = pairs.top();
-        pairs.pop();
-        if (into[a] != a || into[b] != b || version[a] != version_a || version[b] != version_b) continue;
-        const int id = std::min(surfaces_[a].id, surfaces_[b].id);
-        surfaces_[a].absorb(surfaces_[b]);
-        surfaces_[a].id = id;
-        update(a);
-        into[b] = a;
-        ++version[a];
-        ask(a);
-    }
-
-    // Close the gaps.
-    std::vector<std::size_t> now(surfaces_.size());
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < surfaces_.size(); ++i) {
-        if (into[i] != i) {
-            now[i] = now[into[i]];  // of two, the one with the smaller index stays
-            continue;
-        }
-        now[i] = kept;
-        if (kept != i) {
-            surfaces_[kept] = std::move(surfaces_[i]);
-            bounds_[kept] = bounds_[i];
-        }
-        ++kept;
-    }
-    surfaces_.resize(kept);
-    bounds_.resize(kept);
-    return now;
 }
 
 }  // namespace planemap::map
