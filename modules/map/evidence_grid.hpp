@@ -32,7 +32,7 @@ struct FlatPolygon {
 
 /// Where a plane has been seen (hits) and where something beyond it was (misses): a raster in the plane that
 /// counts both for each cell, 64 cells at once. It grows with the plane's extent and not with the number of
-/// views. EvidenceCells are aligned to the origin of the grid's frame.
+/// observations. Cells are aligned to the origin of the grid's frame.
 class EvidenceGrid {
   public:
     EvidenceGrid() = default;

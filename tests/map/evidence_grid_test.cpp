@@ -82,7 +82,7 @@ TEST(EvidenceGrid, GrowsAndCounts) {
     EXPECT_NEAR(area(grid.outline(twice)), 0.5 + 1, 1e-9);
     EXPECT_NEAR(area(grid.outline({})), 6, 1e-9);
     for (int i = 0; i < 300; ++i) add(grid, Outline{{rectangle_ring(0, 0, 1, 1)}}, i % 3);
-    EXPECT_EQ(hits(0.2, 0.5), EvidenceGrid::kMaxCount);
+    EXPECT_EQ(hits(0.2, 0.5), EvidenceCells::kMaxCount);
     EXPECT_EQ(hits(4.7, 0.5), 2);
 }
 

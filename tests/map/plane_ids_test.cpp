@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <random>
 #include <set>
 
@@ -56,8 +55,7 @@ TEST(PlaneIds, KeptOnesKeepTheirsWhateverTheVotes) {
 TEST(PlaneIds, NoIdIsGivenTwiceAndNoneThatIsGoneComesAgain) {
     std::mt19937_64 random(2);
     PlaneIds ids;
-    std::vector<int> before;
-    std::set<int> ever;
+    std::set<int> before, ever;
     for (int round = 0; round < 50; ++round) {
         const int first = ids.upcoming();
         const std::vector<int> now = provisional(ids, 1 + static_cast<int>(random() % 8));
@@ -69,17 +67,18 @@ TEST(PlaneIds, NoIdIsGivenTwiceAndNoneThatIsGoneComesAgain) {
         std::set<int> given;
         for (const int id : now) {
             EXPECT_TRUE(given.insert(id_of.at(id)).second) << "twice";
-            const bool was_there = std::find(before.begin(), before.end(), id_of.at(id)) != before.end();
-            EXPECT_TRUE(was_there || !ever.contains(id_of.at(id))) << "an id of a plane that is gone";
+            EXPECT_TRUE(before.contains(id_of.at(id)) || !ever.contains(id_of.at(id)))
+                << "an id of a plane that is gone";
         }
-        before.assign(given.begin(), given.end());
+        before = given;
         ever.insert(given.begin(), given.end());
     }
 }
 
 TEST(PlaneIds, OfNoPlanes) {
     PlaneIds ids;
-    EXPECT_TRUE(ids.carry_over({}, {1, 2}, {{{1, 2}, 5}}, 0).empty());
+    EXPECT_TRUE(ids.carry_over({}, {1, 2}, {}, 0).empty());
+    EXPECT_EQ(ids.upcoming(), 0);
 }
 
 }  // namespace

@@ -56,11 +56,11 @@ struct Mapping {
 TEST(Planes, RegionsKnowTheirPlanesThroughMergersAndRebuilds) {
     Mapping mapping;
     const Pose here = Pose::Identity();
-    mapping.see(0, {wall_at(-1.2, 0, 3), wall_at(0, 0, 4, 2)}, here);
-    mapping.see(1, {wall_at(1.2, 0, 3)}, here);
+    mapping.see(0, {wall_at(-1.6, 0, 3), wall_at(0, 0, 4, 2)}, here);
+    mapping.see(1, {wall_at(1.6, 0, 3)}, here);
     mapping.expect_consistent();
     ASSERT_EQ(mapping.planes.estimates().size(), 3u);
-    mapping.see(2, {wall_at(0, 0, 3, 0.8)}, here);  // joins both parts
+    mapping.see(2, {wall_at(0, 0, 3, 1.2)}, here);  // joins both parts
     ASSERT_EQ(mapping.planes.estimates().size(), 2u);
     mapping.expect_consistent();
     std::set<int> before, after;
@@ -105,13 +105,14 @@ TEST(Planes, WhatIsFoldedStaysThroughARebuild) {
 TEST(Planes, FoldedPlanesThatMergeBecomeOne) {
     Mapping mapping;
     const Pose here = Pose::Identity();
-    mapping.see(0, {wall_at(-1.2, 0, 3)}, here);
-    mapping.see(1, {wall_at(1.2, 0, 3)}, here);
+    mapping.see(0, {wall_at(-1.6, 0, 3)}, here);
+    mapping.see(1, {wall_at(1.6, 0, 3)}, here);
+    ASSERT_EQ(mapping.planes.estimates().size(), 2u);
     for (int i = 0; i < 2; ++i) {
         mapping.planes.fold(i, mapping.store.keyframes().at(i));
         mapping.store.retire_oldest();
     }
-    mapping.see(2, {wall_at(0, 0, 3, 0.8)}, here);
+    mapping.see(2, {wall_at(0, 0, 3, 1.2)}, here);
     ASSERT_EQ(mapping.planes.estimates().size(), 1u);
     EXPECT_EQ(mapping.planes.estimates()[0].keyframes, 3);
     const double points = points_of(mapping.planes.estimates());

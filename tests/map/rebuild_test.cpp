@@ -20,7 +20,7 @@ struct World {
     KeyframeStore store{200};
     FoldedPlanes folded{kRules, 200};
     PlaneIds ids;
-    RegionJoiner joiner{{}, 0.025};
+    RegionJoiner joiner{ObservationModel{}, 0.025};
     MapLosses losses;
 
     void see(int id, const std::vector<scene::Rectangle>& seen, const std::vector<int>& planes) {
