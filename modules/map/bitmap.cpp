@@ -5,7 +5,7 @@
 #include <array>
 #include <bit>
 
-namespace planemap {
+namespace planemap::map {
 
 std::size_t Bitmap::count() const {
     std::size_t total = 0;
@@ -124,4 +124,4 @@ Outline Bitmap::trace() const {
     return outline;
 }
 
-}  // namespace planemap
+}  // namespace planemap::map

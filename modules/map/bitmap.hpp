@@ -6,7 +6,7 @@
 
 #include "core/outline.hpp"
 
-namespace planemap {
+namespace planemap::map {
 
 /// A binary image of which 64 cells of a row are one word, so that what is done to cells is done to 64 of
 /// them at once. Cells have integer coordinates of either sign; those outside are not set.
@@ -57,4 +57,4 @@ class Bitmap {
     std::vector<std::uint64_t> bits_;
 };
 
-}  // namespace planemap
+}  // namespace planemap::map

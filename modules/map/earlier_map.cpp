@@ -11,7 +11,7 @@
 
 #include "core/stamp.hpp"
 
-namespace planemap {
+namespace planemap::map {
 
 namespace {
 
@@ -65,4 +65,4 @@ KeptMap keep_earlier_map(const fs::path& file) {
     return kept;
 }
 
-}  // namespace planemap
+}  // namespace planemap::map

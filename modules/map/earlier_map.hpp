@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace planemap {
+namespace planemap::map {
 
 /// What keep_earlier_map() did.
 struct KeptMap {
@@ -18,4 +18,4 @@ struct KeptMap {
 /// Throws std::runtime_error naming the file if it cannot be kept.
 KeptMap keep_earlier_map(const std::filesystem::path& file);
 
-}  // namespace planemap
+}  // namespace planemap::map

@@ -5,7 +5,9 @@
 #include <bit>
 #include <cmath>
 
-namespace planemap {
+#include "map/bitmap.hpp"
+
+namespace planemap::map {
 
 namespace {
 
@@ -34,32 +36,6 @@ void FlatPolygon::assign(const Outline& outline) {
     }
 }
 
-std::uint64_t EvidenceGrid::Cells::at_least(int hits) const {
-    // hit >= hits: greater at the highest bit that differs, or equal.
-    std::uint64_t greater = 0, equal = ~std::uint64_t{0};
-    for (int s = 3; s >= 0; --s) {
-        const std::uint64_t bit = hit[static_cast<std::size_t>(s)];
-        if ((hits >> s & 1) != 0) {
-            equal &= bit;
-        } else {
-            greater |= equal & bit;
-            equal &= ~bit;
-        }
-    }
-    return greater | equal;
-}
-
-/// Adds 2^strength to the counts of the cells; they stay at 15.
-void EvidenceGrid::count(std::array<std::uint64_t, 4>& counts, std::uint64_t cells, int strength) {
-    std::uint64_t carry = cells;
-    for (auto s = static_cast<std::size_t>(strength); s < counts.size(); ++s) {
-        const std::uint64_t both = counts[s] & carry;
-        counts[s] ^= carry;
-        carry = both;
-    }
-    for (std::uint64_t& bits : counts) bits |= carry;
-}
-
 /// Room for the words [word_from, word_to) of the rows [y_from, y_to).
 void EvidenceGrid::grow(int word_from, int y_from, int word_to, int y_to) {
     if (!cells_.empty() && word_from >= word0_ && y_from >= y0_ && word_to <= word0_ + words_ &&
@@ -75,7 +51,7 @@ void EvidenceGrid::grow(int word_from, int y_from, int word_to, int y_to) {
         y0 = y_from < y0_ ? y_from - spare : y0_;
         y1 = y_to > y0_ + rows_ ? y_to + spare : y0_ + rows_;
     }
-    std::vector<Cells> cells(static_cast<std::size_t>(w1 - w0) * static_cast<std::size_t>(y1 - y0));
+    std::vector<EvidenceCells> cells(static_cast<std::size_t>(w1 - w0) * static_cast<std::size_t>(y1 - y0));
     for (int y = y0_; y < y0_ + rows_; ++y) {
         std::copy(row(y), row(y) + words_,
                   cells.begin() + static_cast<std::ptrdiff_t>(y - y0) * (w1 - w0) + (word0_ - w0));
@@ -123,14 +99,14 @@ int EvidenceGrid::add(const FlatPolygon& polygon, int strength) {
     int fresh = 0;
     for (int y = 0; y < rows; ++y) {
         const std::uint64_t* flips = flips_.data() + static_cast<std::ptrdiff_t>(y) * words;
-        Cells* cells = row(y_from + y) + (word_from - word0_);
+        EvidenceCells* cells = row(y_from + y) + (word_from - word0_);
         std::uint64_t carried = 0;  // all ones while inside
         for (int w = 0; w < words; ++w) {
             const std::uint64_t inside = parity_up_to(flips[w]) ^ carried;
             carried = (inside >> 63) != 0 ? ~std::uint64_t{0} : 0;
             if (inside == 0) continue;
             fresh += std::popcount(inside & ~cells[w].at_least(1));
-            count(cells[w].hit, inside, strength);
+            cells[w].add_hits(inside, strength);
         }
     }
     return fresh;
@@ -159,18 +135,18 @@ void EvidenceGrid::add(const EvidenceGrid& other) {
         for (int x = x_from; x < x_to; ++x, p += step) {
             const Counts theirs = other.counts(p);
             if (theirs.hits == 0 && theirs.misses == 0) continue;
-            Cells& here = row(y)[(x >> 6) - word0_];
+            EvidenceCells& here = row(y)[(x >> 6) - word0_];
             const std::uint64_t bit = std::uint64_t{1} << (x & 63);
             for (const int strength : {0, 1, 2, 3}) {
-                if ((theirs.hits >> strength & 1) != 0) count(here.hit, bit, strength);
-                if ((theirs.misses >> strength & 1) != 0) count(here.miss, bit, strength);
+                if ((theirs.hits >> strength & 1) != 0) here.add_hits(bit, strength);
+                if ((theirs.misses >> strength & 1) != 0) here.add_misses(bit, strength);
             }
         }
     }
 }
 
-void EvidenceGrid::doubtful_blocks(const Eigen::Vector2d& low, const Eigen::Vector2d& high,
-                                   std::vector<Block>& blocks) const {
+void EvidenceGrid::uncertain_blocks(const Eigen::Vector2d& low, const Eigen::Vector2d& high,
+                                    std::vector<Block>& blocks) const {
     // Blocks are aligned to the cells' coordinates, whatever part of them is looked at.
     const double per_cell = 1 / cell_m_;
     const auto within = [](double value, int from, int to) {
@@ -184,7 +160,8 @@ void EvidenceGrid::doubtful_blocks(const Eigen::Vector2d& low, const Eigen::Vect
     for (int y = first_row; y < last_row; y += 4) {
         for (int w = first_word; w < last_word; ++w) {
             std::uint64_t any = 0;
-            for (int r = std::max(y, y0_); r < std::min(y + 4, y0_ + rows_); ++r) any |= row(r)[w].doubtful();
+            for (int r = std::max(y, y0_); r < std::min(y + 4, y0_ + rows_); ++r)
+                any |= row(r)[w].uncertain();
             for (int nibble = 0; any != 0; ++nibble, any >>= 4) {
                 if ((any & 15) == 0) continue;
                 blocks.push_back({{cell_m_ * (64.0 * (word0_ + w) + 4.0 * nibble + 2.0), cell_m_ * (y + 2.0)},
@@ -196,12 +173,12 @@ void EvidenceGrid::doubtful_blocks(const Eigen::Vector2d& low, const Eigen::Vect
     }
 }
 
-int EvidenceGrid::doubt(const Block& block, int strength) {
+int EvidenceGrid::add_misses(const Block& block, int strength) {
     int lost = 0;
     for (int r = std::max(block.y, y0_); r < std::min(block.y + 4, y0_ + rows_); ++r) {
-        Cells& c = row(r)[block.word];
-        const std::uint64_t cells = c.doubtful() & std::uint64_t{15} << (4 * block.nibble);
-        count(c.miss, cells, strength);
+        EvidenceCells& c = row(r)[block.word];
+        const std::uint64_t cells = c.uncertain() & std::uint64_t{15} << (4 * block.nibble);
+        c.add_misses(cells, strength);
         lost += std::popcount(cells & c.refuted());
     }
     return lost;
@@ -211,13 +188,8 @@ EvidenceGrid::Counts EvidenceGrid::counts(const Eigen::Vector2d& p_grid) const {
     const double x = std::floor(p_grid.x() / cell_m_), y = std::floor(p_grid.y() / cell_m_);
     if (!(x >= 64.0 * word0_ && y >= y0_ && x < 64.0 * (word0_ + words_) && y < y0_ + rows_)) return {};
     const int cx = static_cast<int>(x);
-    const Cells& cells = row(static_cast<int>(y))[(cx >> 6) - word0_];
-    Counts counts;
-    for (int s = 0; s < 4; ++s) {
-        counts.hits |= static_cast<int>(cells.hit[static_cast<std::size_t>(s)] >> (cx & 63) & 1) << s;
-        counts.misses |= static_cast<int>(cells.miss[static_cast<std::size_t>(s)] >> (cx & 63) & 1) << s;
-    }
-    return counts;
+    const EvidenceCells& cells = row(static_cast<int>(y))[(cx >> 6) - word0_];
+    return {cells.hits(cx & 63), cells.misses(cx & 63)};
 }
 
 Outline EvidenceGrid::outline(const OutlineOptions& options) const {
@@ -226,7 +198,7 @@ Outline EvidenceGrid::outline(const OutlineOptions& options) const {
     Bitmap shape(word0_ - 1, y0_ - kSpare, words_ + 2, rows_ + 2 * kSpare);
     Bitmap sure = shape, refuted = shape;
     for (int y = y0_; y < y0_ + rows_; ++y) {
-        const Cells* cells = row(y);
+        const EvidenceCells* cells = row(y);
         for (int w = 0; w < words_; ++w) {
             const std::uint64_t against = cells[w].refuted();
             shape.row(y)[w + 1] = cells[w].at_least(options.min_hits) & ~against;
@@ -251,4 +223,4 @@ Outline EvidenceGrid::outline(const OutlineOptions& options) const {
     return simplified_without_crossings(outline, options.tolerance_m);
 }
 
-}  // namespace planemap
+}  // namespace planemap::map

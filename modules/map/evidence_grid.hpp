@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
 #include "core/crossing.hpp"
 #include "core/outline.hpp"
 #include "core/pose.hpp"
-#include "map/bitmap.hpp"
+#include "map/evidence_cells.hpp"
 
-namespace planemap {
+namespace planemap::map {
 
 /// How a plane's shape is read off its evidence.
 struct OutlineOptions {
@@ -31,14 +30,11 @@ struct FlatPolygon {
     void assign(const Outline& outline);
 };
 
-/// Where a plane has been seen and where it was looked through: a raster in the plane that counts both for
-/// each cell, 0 to 15. The counts of 64 neighbouring cells are kept bit by bit in the same words, so that a
-/// region is added to 64 cells at once. It grows with the plane's extent and not with the number of views.
-/// Cells are aligned to the origin of the grid's frame.
+/// Where a plane has been seen (hits) and where something beyond it was (misses): a raster in the plane that
+/// counts both for each cell, 64 cells at once. It grows with the plane's extent and not with the number of
+/// observations. Cells are aligned to the origin of the grid's frame.
 class EvidenceGrid {
   public:
-    static constexpr int kMaxCount = 15;
-
     EvidenceGrid() = default;
     /// An empty grid; x and y of the frame lie in the plane, z is its normal.
     EvidenceGrid(const Pose& world_from_grid, double cell_m)
@@ -47,7 +43,7 @@ class EvidenceGrid {
     const Pose& world_from_grid() const { return world_from_grid_; }
     double cell_m() const { return cell_m_; }
     bool empty() const { return cells_.empty(); }
-    std::size_t memory_bytes() const { return cells_.capacity() * sizeof(Cells); }
+    std::size_t memory_bytes() const { return cells_.capacity() * sizeof(EvidenceCells); }
 
     /// Adds 2^strength hits (strength 0 to 2) to every cell whose centre lies inside the polygon (metres in
     /// the grid's x, y). Returns how many cells were hit for the first time.
@@ -61,17 +57,16 @@ class EvidenceGrid {
     };
     Counts counts(const Eigen::Vector2d& p_grid) const;
 
-    /// 4 x 4 cells of which some are part of the shape with less than kBeyondDoubt hits.
+    /// 4 x 4 cells of which some are uncertain (EvidenceCells::uncertain()).
     struct Block {
         Eigen::Vector2d middle;  ///< metres in the grid's x, y
         int y, word, nibble;     ///< first row, word in a row, which four bits of it
     };
     /// Adds those between low and high to the list.
-    void doubtful_blocks(const Eigen::Vector2d& low, const Eigen::Vector2d& high,
-                         std::vector<Block>& blocks) const;
-    /// Adds 2^strength misses to the doubtful cells of a block; returns how many cells left the shape by it.
-    int doubt(const Block& block, int strength);
-    static constexpr int kBeyondDoubt = 12;
+    void uncertain_blocks(const Eigen::Vector2d& low, const Eigen::Vector2d& high,
+                          std::vector<Block>& blocks) const;
+    /// Adds 2^strength misses to the uncertain cells of a block; returns how many cells left the shape by it.
+    int add_misses(const Block& block, int strength);
 
     /// The shape: cells with enough hits and no more misses than hits; slits of up to two cells closed,
     /// slivers of up to two cells left out unless they are well supported. Metres in the grid's x and y; its
@@ -79,37 +74,17 @@ class EvidenceGrid {
     Outline outline(const OutlineOptions& options) const;
 
   private:
-    /// 64 cells: bit s of the counts of all of them is one word.
-    struct Cells {
-        std::array<std::uint64_t, 4> hit{}, miss{};
-
-        std::uint64_t at_least(int hits) const;
-        /// Looked through more often than seen.
-        std::uint64_t refuted() const {
-            std::uint64_t greater = 0, equal = ~std::uint64_t{0};
-            for (std::size_t s = 4; s-- > 0;) {
-                greater |= equal & miss[s] & ~hit[s];
-                equal &= ~(miss[s] ^ hit[s]);
-            }
-            return greater;
-        }
-        /// Part of the shape, but not beyond doubt.
-        std::uint64_t doubtful() const {
-            const std::uint64_t weak = (hit[0] | hit[1] | hit[2] | hit[3]) & ~(hit[3] & hit[2]);
-            return weak == 0 ? 0 : weak & ~refuted();
-        }
-    };
-
     void grow(int word_from, int y_from, int word_to, int y_to);
-    Cells* row(int y) { return cells_.data() + static_cast<std::ptrdiff_t>(y - y0_) * words_; }
-    const Cells* row(int y) const { return cells_.data() + static_cast<std::ptrdiff_t>(y - y0_) * words_; }
-    static void count(std::array<std::uint64_t, 4>& counts, std::uint64_t cells, int strength);
+    EvidenceCells* row(int y) { return cells_.data() + static_cast<std::ptrdiff_t>(y - y0_) * words_; }
+    const EvidenceCells* row(int y) const {
+        return cells_.data() + static_cast<std::ptrdiff_t>(y - y0_) * words_;
+    }
 
     Pose world_from_grid_ = Pose::Identity();
     double cell_m_ = 0.025;
     int word0_ = 0, y0_ = 0, words_ = 0, rows_ = 0;  ///< stored: word w holds the cells x = 64 w to 64 w + 63
-    std::vector<Cells> cells_;
+    std::vector<EvidenceCells> cells_;
     std::vector<std::uint64_t> flips_;  ///< scratch of add()
 };
 
-}  // namespace planemap
+}  // namespace planemap::map

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-namespace planemap {
+namespace planemap::map {
 
 namespace {
 
@@ -145,4 +145,4 @@ std::optional<Eigen::Vector3d> find_up(std::span<const MapPlane> planes,
     return refined(best, evidence, *handling, sin2_tolerance);
 }
 
-}  // namespace planemap
+}  // namespace planemap::map

@@ -8,7 +8,7 @@
 #include "core/plane_map.hpp"
 #include "core/pose.hpp"
 
-namespace planemap {
+namespace planemap::map {
 
 struct GravityRules {
     double tolerance_deg = 10;  ///< a plane this near to level or upright speaks for an up direction
@@ -34,4 +34,4 @@ std::optional<Eigen::Vector3d> find_up(std::span<const MapPlane> planes,
                                        std::span<const Pose> world_from_camera,
                                        const GravityRules& rules = {});
 
-}  // namespace planemap
+}  // namespace planemap::map

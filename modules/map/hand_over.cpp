@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "map/surface.hpp"
+#include "map/plane_estimate.hpp"
 
-namespace planemap {
+namespace planemap::map {
 
 namespace {
 
@@ -73,4 +73,4 @@ void hand_over(const StoredKeyframe& gone, const std::vector<StoredKeyframe*>& h
     }
 }
 
-}  // namespace planemap
+}  // namespace planemap::map

@@ -7,7 +7,7 @@
 
 #include "map/stored_keyframe.hpp"
 
-namespace planemap {
+namespace planemap::map {
 
 /// Hands the regions of a keyframe that goes to those near it, all with the poses that they are in the map
 /// with; give the nearest first, and regions that know their planes. Where the heirs saw (nearly) all of what
@@ -18,4 +18,4 @@ namespace planemap {
 void hand_over(const StoredKeyframe& gone, const std::vector<StoredKeyframe*>& heirs,
                const std::function<double(const StoredRegion&)>& agreement_m);
 
-}  // namespace planemap
+}  // namespace planemap::map

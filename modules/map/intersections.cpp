@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-namespace planemap {
+namespace planemap::map {
 
 namespace {
 
@@ -143,4 +143,4 @@ std::optional<IntersectionPoint> intersection_point(const PlaneShape& a, const P
     return point;
 }
 
-}  // namespace planemap
+}  // namespace planemap::map

@@ -7,7 +7,7 @@
 
 #include "core/plane_map.hpp"
 
-namespace planemap {
+namespace planemap::map {
 
 /// When two planes count as adjacent.
 struct AdjacencyRules {
@@ -38,4 +38,4 @@ std::vector<IntersectionLine> intersection_lines(const PlaneShape& a, const Plan
 std::optional<IntersectionPoint> intersection_point(const PlaneShape& a, const PlaneShape& b,
                                                     const PlaneShape& c, const AdjacencyRules& rules);
 
-}  // namespace planemap
+}  // namespace planemap::map

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-namespace planemap {
+namespace planemap::map {
 
 namespace {
 
@@ -41,10 +41,10 @@ struct Storey {
     double floor = -kInfinity, next_floor = kInfinity;  ///< heights
 };
 
-class Namer {
+class Labeller {
   public:
-    Namer(PlaneMap& map, std::span<const Pose> world_from_camera, const Eigen::Vector3d& up,
-          const LabelRules& rules)
+    Labeller(PlaneMap& map, std::span<const Pose> world_from_camera, const Eigen::Vector3d& up,
+             const LabelRules& rules)
         : rules_(rules), up_(up) {
         for (const Pose& pose : world_from_camera) {
             const double height = up.dot(pose.translation());
@@ -56,11 +56,11 @@ class Namer {
         std::stable_sort(planes_.begin(), planes_.end(), [](auto& a, auto& b) { return a.area > b.area; });
     }
 
-    void name() {
+    void label() {
         for (const Standing& s : planes_)
             s.plane->label = is_level(s) ? PlaneLabel::kHorizontal : PlaneLabel::kOther;
-        const std::vector<Storey> storeys = name_floors();
-        for (const Storey& storey : storeys) name_ceiling(storey);
+        const std::vector<Storey> storeys = label_floors();
+        for (const Storey& storey : storeys) label_ceiling(storey);
         for (const Standing& s : planes_) {
             if (s.lie == Lie::kUpright && is_wall(s, storeys)) s.plane->label = PlaneLabel::kWall;
         }
@@ -151,12 +151,12 @@ class Namer {
         return level.area >= (too_far_below_for_a_table ? rules_.high_floor_area_m2 : rules_.floor_area_m2);
     }
 
-    static void label(const Level& level, PlaneLabel label) {
+    static void set_label(const Level& level, PlaneLabel label) {
         for (const Standing* s : level.pieces) s->plane->label = label;
     }
 
     /// The storeys, from the lowest up; one without a floor if none is seen.
-    std::vector<Storey> name_floors() const {
+    std::vector<Storey> label_floors() const {
         std::vector<Level> candidates = levels(Lie::kFacesUp);
         std::erase_if(candidates, [&](const Level& level) { return !is_floor_sized(level); });
         // The lowest floor: the lowest of those with next to nothing below, but no mere scrap beside another.
@@ -178,7 +178,7 @@ class Namer {
                                             cameras_between(h + rules_.same_height_m,
                                                             h + rules_.standing_m) >= rules_.standing_share;
             if (!is_floor) continue;
-            label(level, PlaneLabel::kFloor);
+            set_label(level, PlaneLabel::kFloor);
             if (!storeys.empty()) storeys.back().next_floor = h;
             storeys.push_back({h, kInfinity});
         }
@@ -186,7 +186,7 @@ class Namer {
         return storeys;
     }
 
-    void name_ceiling(const Storey& storey) const {
+    void label_ceiling(const Storey& storey) const {
         const bool no_floor = std::isinf(storey.floor);
         const double from =
             no_floor ? cameras_[cameras_.size() * 4 / 5] : storey.floor + rules_.ceiling_height_m;
@@ -203,7 +203,7 @@ class Namer {
         }
         if (ceiling == nullptr) return;
         for (const Level& level : candidates)
-            if (level.height() >= ceiling->height()) label(level, PlaneLabel::kCeiling);
+            if (level.height() >= ceiling->height()) set_label(level, PlaneLabel::kCeiling);
     }
 
     bool is_wall(const Standing& s, const std::vector<Storey>& storeys) const {
@@ -223,13 +223,13 @@ class Namer {
 
 }  // namespace
 
-void name_planes(PlaneMap& map, std::span<const Pose> world_from_camera, const LabelRules& rules) {
+void label_planes(PlaneMap& map, std::span<const Pose> world_from_camera, const LabelRules& rules) {
     map.up.setZero();
     for (MapPlane& plane : map.planes) plane.label = PlaneLabel::kUnknown;
     const std::optional<Eigen::Vector3d> up = find_up(map.planes, world_from_camera, rules.gravity);
     if (!up) return;
     map.up = up->cast<float>().normalized();
-    Namer(map, world_from_camera, *up, rules).name();
+    Labeller(map, world_from_camera, *up, rules).label();
 }
 
-}  // namespace planemap
+}  // namespace planemap::map

@@ -8,7 +8,7 @@
 #include "core/pose.hpp"
 #include "map/gravity.hpp"
 
-namespace planemap {
+namespace planemap::map {
 
 struct LabelRules {
     GravityRules gravity;  ///< its tolerance is also that of level and upright planes here
@@ -43,6 +43,6 @@ struct LabelRules {
 /// - horizontal: other level surfaces: tables, seats, shelves, steps, and what is level and faces down.
 /// - other: what is oblique, and small upright faces such as the sides of a cabinet.
 /// - unknown: every plane if up is not known (map.up is zero then), and planes that are not finite.
-void name_planes(PlaneMap& map, std::span<const Pose> world_from_camera, const LabelRules& rules = {});
+void label_planes(PlaneMap& map, std::span<const Pose> world_from_camera, const LabelRules& rules = {});
 
-}  // namespace planemap
+}  // namespace planemap::map

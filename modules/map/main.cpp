@@ -3,7 +3,7 @@
 
 int main(int argc, char** argv) {
     planemap::Process process("map", "Keyframes' planar regions and the trajectory to the plane map.");
-    planemap::MapShellOptions options;
+    planemap::map::MapShellOptions options;
     process.flags().add("o,output", options.output,
                         "Folder for plane_map.lcmlog; without it nothing is written");
     process.flags().add(
@@ -11,6 +11,7 @@ int main(int argc, char** argv) {
         "plane_map.lcmlog to start from, in the world frame of this run: its planes keep their ids "
         "and grow on");
     add_flags(process.flags(), options.map);
-    return process.run(
-        argc, argv, [&](planemap::Bus& bus) { return std::make_unique<planemap::MapShell>(bus, options); });
+    return process.run(argc, argv, [&](planemap::Bus& bus) {
+        return std::make_unique<planemap::map::MapShell>(bus, options);
+    });
 }

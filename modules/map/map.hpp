@@ -2,67 +2,18 @@
 #pragma once
 
 #include <cstddef>
-#include <limits>
 #include <map>
-#include <optional>
-#include <utility>
 #include <vector>
 
-#include "core/camera.hpp"
 #include "core/keyframe.hpp"
 #include "core/plane_map.hpp"
-#include "core/replacement.hpp"
-#include "map/intersections.hpp"
-#include "map/surface.hpp"
+#include "map/derived_map.hpp"
+#include "map/keyframe_store.hpp"
+#include "map/map_losses.hpp"
+#include "map/map_options.hpp"
+#include "map/planes.hpp"
 
-namespace planemap {
-
-struct MapOptions {
-    double merge_angle_deg = 10;     ///< largest angle between merged regions (paper section 2.3)
-    double merge_distance_m = 0.05;  ///< largest distance between their planes, where they are (section 2.3)
-    double merge_gap_m = 0.5;        ///< largest gap between their boxes (section 2.3)
-
-    DepthNoise noise;            ///< of the depth sensor: a far, noisy view weighs less in a plane's fit
-    double pose_sigma_m = 0.02;  ///< error of keyframe poses; below it, less sensor noise gains no weight
-    double agreement_m = 0.01;   ///< a view off its plane by much more (and the sensor's noise) loses weight
-
-    double outline_cell_m = 0.025;      ///< raster on which a plane's shape is collected
-    double outline_tolerance_m = 0.04;  ///< simplification of the outline
-    double outline_min_ring_m2 = 0.01;  ///< smaller parts and holes of an outline are left out
-    int outline_min_hits = 1;           ///< evidence a cell needs: 1 for a far view, up to 4 for a near one
-    double see_through_m = 0.05;        ///< a view past a cell by more (and 2 sigma) is evidence against it
-
-    double adjacency_gap_m = 0.15;     ///< planes meet where both outlines come this near to the common line
-    double adjacency_angle_deg = 15;   ///< flatter pairs get no intersection line
-    double adjacency_length_m = 0.25;  ///< shorter intersection lines are left out
-
-    double min_area_m2 = 0.05;    ///< smaller planes are kept, but are not in map()
-    double min_single_m2 = 0.25;  ///< the same for planes that only one keyframe saw
-    int min_keyframes = 1;        ///< planes seen by fewer keyframes are kept, but are not in map()
-
-    double moved_m = 0.002;     ///< keyframes that moved less than this,
-    double moved_deg = 0.05;    ///< and turned less than this, do not cause a rebuild
-    double max_extent_m = 200;  ///< a plane does not grow longer than this
-    int fold_after = 0;  ///< keyframes older than so many newer ones are taken not to move any more, and
-                         ///< their regions are folded into the planes; 0: never
-    int threads = 2;     ///< of a rebuild; they do not change the result
-
-    /// Throws std::invalid_argument that names every bad field.
-    void validate() const;
-};
-
-/// What a mapper left out, by the reason.
-struct MapLosses {
-    std::size_t regions_refused = 0;   ///< not valid, without a plane, or larger or farther than can be seen
-    std::size_t regions_too_many = 0;  ///< of one keyframe, after the 256th
-    std::size_t regions_too_far = 0;   ///< more than 100 km from the world's origin
-    std::size_t planes_refused = 0;    ///< of start_from()
-    std::size_t poses_refused = 0;     ///< of trajectories: no pose, or more than 100 km away
-    std::size_t keyframes_unplaced = 0;   ///< that waited for a pose while 4096 newer ones came
-    std::size_t keyframes_too_late = 0;   ///< that came again after they were folded
-    std::size_t keyframes_far_ahead = 0;  ///< with an id more than 10,000 after the largest one
-    std::size_t keyframes_of_others = 0;  ///< with the id of one in the map, and another time
-};
+namespace planemap::map {
 
 /// Builds the map of planes from keyframes and their poses (paper section 2.3).
 ///
@@ -76,8 +27,10 @@ struct MapLosses {
 /// Merged moments are exact. The plane itself is the fit to them in which each view is weighted by
 /// pose_sigma^2 / (pose_sigma^2 + sigma(z)^2), z being its mean depth, and less the less it agrees with the
 /// plane so far: what merges by the rules but lies some centimetres off does not pull the plane along. Its
-/// shape counts, for each cell, views (a near one up to four times) and how often the cell was looked
-/// through.
+/// shape counts, for each cell, views (a near one up to four times) and keyframes that saw past it.
+///
+/// Who owns what: keyframes and poses KeyframeStore, estimates of the planes and their ids Planes, the map
+/// that is derived from them DerivedMap. This class says when they do what.
 class PlaneMapper {
   public:
     /// Throws std::invalid_argument for bad options.
@@ -86,7 +39,7 @@ class PlaneMapper {
     /// Starts from a finished map, in its world frame: its planes keep their ids and grow on. Call it first.
     /// Planes that are larger than max_extent_m, or further out than 100 km, count in rejected(). The shapes
     /// of a very large map go on in coarser cells, the largest first, so that its rasters take 128 MB (a
-    /// rebuild holds them three times); such planes count in coarsened().
+    /// rebuild holds them twice); such planes count in coarsened().
     void start_from(const PlaneMap& map);
 
     /// Takes a keyframe; it waits if no trajectory has named its pose yet. Regions that are invalid
@@ -108,10 +61,10 @@ class PlaneMapper {
     void settle();
 
     /// The map after the last call.
-    const PlaneMap& map() const { return map_; }
+    const PlaneMap& map() const { return derived_.map(); }
     /// Bytes of the map itself: all that map() holds, by capacity, without the keyframes kept for rebuilding
     /// and without the rasters of the outlines.
-    std::size_t memory_bytes() const { return planemap::memory_bytes(map_); }
+    std::size_t memory_bytes() const { return planemap::memory_bytes(map()); }
     /// Bytes of what is kept to go on mapping: keyframe regions and rasters, by capacity, roughly.
     std::size_t working_bytes() const;
 
@@ -119,9 +72,9 @@ class PlaneMapper {
     /// those of points spread evenly over it.
     Moments moments(int plane_id) const;
     /// Ids of the keyframes that saw each plane, ascending, by the plane's id.
-    std::map<int, std::vector<int>> sightings() const;
+    std::map<int, std::vector<int>> sightings() const { return keyframes_.sightings(); }
     /// Keyframes that have no pose yet: at most 4096, then the oldest is dropped.
-    std::size_t waiting() const;
+    std::size_t waiting() const { return keyframes_.waiting(); }
     std::size_t dropped() const { return losses_.keyframes_unplaced; }
     /// Regions and planes left out so far.
     std::size_t rejected() const {
@@ -129,91 +82,31 @@ class PlaneMapper {
     }
     const MapLosses& losses() const { return losses_; }
     /// Keyframes that are kept, and those whose regions went over to others.
-    std::size_t keyframes() const { return keyframes_.size(); }
+    std::size_t keyframes() const { return keyframes_.keyframes().size(); }
     std::size_t replaced() const { return replaced_; }
     /// Planes of start_from() whose shape goes on in cells coarser than outline_cell_m.
     std::size_t coarsened() const { return coarsened_; }
     /// True if so many planes meet one another that map() does not hold all points where three do.
-    bool left_out_corners() const { return left_out_corners_; }
+    bool left_out_corners() const { return derived_.left_out_points(); }
     /// Keyframes whose regions were folded into the planes (MapOptions::fold_after).
     std::size_t folded() const { return folded_; }
     /// How often the whole map was rebuilt.
     std::size_t rebuilds() const { return rebuilds_; }
 
   private:
-    /// A keyframe in the map as one looks through its eyes.
-    struct View {
-        const StoredKeyframe* keyframe;
-        Pose camera_from_world;
-        std::vector<Plane> planes;  ///< of its regions, camera frame
-
-        explicit View(const StoredKeyframe& seen);
-    };
-    /// Where on a surface's grid a view may fall.
-    struct Footprint {
-        Pose camera_from_grid;
-        Eigen::Vector2d low, high;
-    };
-    /// A region on its way into a surface's shape.
-    struct DrawnRegion {
-        const StoredKeyframe* keyframe;
-        std::size_t region;
-        Pose world_from_box;
-    };
-    bool is_usable(const PlanarRegion& region) const;
-    double weight(const StoredRegion& region) const;
-    Reliability reliability(const StoredRegion& region) const;
-    int strength(const StoredRegion& region) const;
-    void drop_waiting();
     void place(int keyframe_id);
-    std::size_t join(SurfaceSet& set, const PlacedRegion& placed, const StoredRegion& region,
-                     const StoredKeyframe& keyframe);
-    Surface surface_of(int id, const PlacedRegion& placed, const StoredRegion& region,
-                       const StoredKeyframe& keyframe);
-    void take_in(Surface& surface, const PlacedRegion& placed, const StoredRegion& region,
-                 const StoredKeyframe& keyframe);
-    void draw(Surface& surface, const PlacedRegion& placed, const StoredRegion& region,
-              const StoredKeyframe& keyframe, int keyframe_id);
-    void integrate(int keyframe_id);
-    void look_through(Surface& surface, const View& view, std::vector<EvidenceGrid::Block>& blocks) const;
-    void look_through(Surface& surface, const std::vector<View>& views) const;
-    std::optional<Footprint> footprint_of(const Surface& surface, const View& view) const;
-    void doubt(Surface& surface, const View& view, const Footprint& footprint,
-               const std::vector<EvidenceGrid::Block>& blocks) const;
-    void merge(const std::vector<std::size_t>& grown);
-    int resolved(int plane_id) const;
     void fold();
-    void replace(const std::vector<Replacement>& gone);
-    std::vector<StoredKeyframe*> heirs_of(const StoredKeyframe& gone);
-    void unite_fixed(const std::vector<int>& ids);
+    void hand_over_replaced(const KeyframeTrajectory& trajectory);
     void rebuild();
-    void redraw(Surface& surface, const std::vector<DrawnRegion>& regions, const std::vector<View>& views);
-    void keep_ids(const std::map<int, std::vector<int>>& planes_before, int first_new_id);
-    void count_keyframes();
-    void refresh();
-    bool derive(Surface& surface, std::optional<MapPlane>& plane) const;
-    void name();
-    template <typename IsChanged>
-    void add_corners(const AdjacencyRules& rules, IsChanged is_changed);
-    void refresh_intersections(const std::vector<int>& changed_ids);
+    void refresh() { derived_.refresh(planes_.estimates(), keyframes_.poses()); }
 
     MapOptions options_;
-    std::map<int, Pose> poses_;                ///< world_from_camera of all keyframes named so far
-    std::vector<KeyframePose> named_;          ///< by the last trajectory
-    int newest_id_ = -1;                       ///< the largest id of a keyframe so far
-    std::map<int, StoredKeyframe> keyframes_;  ///< by id
-    std::vector<Surface> fixed_;               ///< planes that no keyframe can move any more
-    SurfaceSet set_;
-    std::map<int, int> merged_into_;    ///< plane ids that went up in another one
-    std::map<int, PlaneShape> shapes_;  ///< of map_'s planes
-    int next_id_ = 0;
-    int folded_up_to_ = std::numeric_limits<int>::min();  ///< keyframes up to this id are folded
-    PlaneMap map_;
-    FlatPolygon polygon_;  ///< scratch
+    KeyframeStore keyframes_;
+    Planes planes_;
+    DerivedMap derived_;
     MapLosses losses_;
-    bool left_out_corners_ = false;
     std::size_t coarsened_ = 0, folded_ = 0, replaced_ = 0, rebuilds_ = 0;
-    bool settled_ = true;
+    bool settled_ = true;  ///< nothing came since the last rebuild
 };
 
-}  // namespace planemap
+}  // namespace planemap::map

@@ -9,7 +9,7 @@
 #include "messages/decode.hpp"
 #include "messages/log.hpp"
 
-namespace planemap {
+namespace planemap::map {
 
 std::string plane_map_log(const PlaneMap& map) {
     const plane_map_t message = to_message(map, 0);
@@ -57,4 +57,4 @@ bool may_hold_planes(const std::filesystem::path& file) {
     }
 }
 
-}  // namespace planemap
+}  // namespace planemap::map

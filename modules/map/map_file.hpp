@@ -7,7 +7,7 @@
 
 #include "core/plane_map.hpp"
 
-namespace planemap {
+namespace planemap::map {
 
 /// The map as one event of an LCM log, on PLANEMAP_MAP.
 std::string plane_map_log(const PlaneMap& map);
@@ -24,4 +24,4 @@ PlaneMap read_plane_map(const std::filesystem::path& file);
 /// map, since what it holds is not known.
 bool may_hold_planes(const std::filesystem::path& file);
 
-}  // namespace planemap
+}  // namespace planemap::map

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "map/map_shell.hpp"
 
-namespace planemap {
+namespace planemap::map {
 
 void add_flags(Flags& flags, MapOptions& options, const std::string& prefix) {
     flags.section("Map", prefix);
@@ -43,4 +43,4 @@ void add_flags(Flags& flags, MapOptions& options, const std::string& prefix) {
     flags.add("threads", options.threads, "threads of a rebuild; they do not change the result");
 }
 
-}  // namespace planemap
+}  // namespace planemap::map

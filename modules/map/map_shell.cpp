@@ -14,7 +14,7 @@
 #include "messages/convert.hpp"
 #include "messages/decode.hpp"
 
-namespace planemap {
+namespace planemap::map {
 
 namespace {
 constexpr std::int64_t kWritePeriodUs = 5000000;
@@ -194,4 +194,4 @@ bool MapShell::make_way() {
     return is_ours_ = true;
 }
 
-}  // namespace planemap
+}  // namespace planemap::map

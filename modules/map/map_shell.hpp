@@ -10,7 +10,7 @@
 #include "messages/process.hpp"
 #include "messages/stream_guard.hpp"
 
-namespace planemap {
+namespace planemap::map {
 
 struct MapShellOptions {
     MapOptions map;
@@ -68,4 +68,4 @@ class MapShell : public Shell {
 /// Flags for the options, each named --<prefix>NAME.
 void add_flags(Flags& flags, MapOptions& options, const std::string& prefix = "");
 
-}  // namespace planemap
+}  // namespace planemap::map

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace planemap {
+namespace planemap::map {
 
 namespace {
 
@@ -150,4 +150,4 @@ std::optional<RegionRelation> same_plane(const Plane& plane_a, const Box& box_a,
     return same ? std::optional(relation) : std::nullopt;
 }
 
-}  // namespace planemap
+}  // namespace planemap::map

@@ -6,7 +6,7 @@
 
 #include "core/box.hpp"
 
-namespace planemap {
+namespace planemap::map {
 
 /// Thresholds of paper section 2.3.
 struct MergeRules {
@@ -35,4 +35,4 @@ RegionRelation relate(const Plane& plane_a, const Box& box_a, const Plane& plane
 std::optional<RegionRelation> same_plane(const Plane& plane_a, const Box& box_a, const Plane& plane_b,
                                          const Box& box_b, const MergeRules& rules);
 
-}  // namespace planemap
+}  // namespace planemap::map

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace planemap {
+namespace planemap::map {
 
 namespace {
 
@@ -236,4 +236,4 @@ const MapQueries::Entry* MapQueries::find(int id) const {
     return at != entries_.end() && at->id == id ? &*at : nullptr;
 }
 
-}  // namespace planemap
+}  // namespace planemap::map

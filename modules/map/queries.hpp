@@ -9,7 +9,7 @@
 
 #include "core/plane_map.hpp"
 
-namespace planemap {
+namespace planemap::map {
 
 /// How two planes lie to each other: what Tables 3 and 4 of the paper measure.
 struct PlaneRelation {
@@ -82,4 +82,4 @@ class MapQueries {
     Eigen::Vector3d up_;
 };
 
-}  // namespace planemap
+}  // namespace planemap::map

@@ -3,9 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
-namespace planemap {
+namespace planemap::map {
 
 namespace {
 
@@ -55,74 +54,6 @@ void set_moments(StoredRegion& region, const Moments& moments) {
 }
 
 }  // namespace
-
-Sight::Sight(const std::vector<PlanarRegion>& regions) {
-    // Vertices as directions; what lies behind the camera or beside it says nothing.
-    std::vector<FlatPolygon> seen(std::min<std::size_t>(regions.size(), kNone));
-    Eigen::Vector2d low = Eigen::Vector2d::Constant(1e9), high = -low;
-    for (std::size_t i = 0; i < seen.size(); ++i) {
-        bool in_front = true;
-        for (const Ring& ring : regions[i].outline.rings) {
-            for (const Eigen::Vector2d& v : ring) {
-                const Eigen::Vector3d p = regions[i].box.frame_from_box * Eigen::Vector3d(v.x(), v.y(), 0);
-                in_front = in_front && p.z() > 0.05;
-                reach_ = std::max(reach_, p.norm());
-                seen[i].vertices.emplace_back(p.head<2>() / p.z());
-            }
-            seen[i].ring_ends.push_back(seen[i].vertices.size());
-        }
-        if (!in_front) seen[i].clear();
-        for (const auto& v : seen[i].vertices) {
-            low = low.cwiseMin(v.cwiseMax(-4.0));
-            high = high.cwiseMax(v.cwiseMin(4.0));
-        }
-    }
-    if (!(low.x() < high.x() && low.y() < high.y())) return;
-    low_ = low;
-    per_cell_ = Eigen::Vector2d(kWidth, kHeight).cwiseQuotient(high - low);
-
-    // Which regions hold the corners of the cells.
-    constexpr int kColumns = kWidth + 1, kRows = kHeight + 1;
-    std::array<std::uint8_t, static_cast<std::size_t>(kColumns) * kRows> inside;
-    std::array<double, kWidth * kHeight> nearest;
-    nearest.fill(std::numeric_limits<double>::infinity());
-    for (std::size_t i = 0; i < seen.size(); ++i) {
-        if (seen[i].vertices.empty()) continue;
-        inside.fill(0);
-        std::size_t begin = 0;
-        for (const std::size_t end : seen[i].ring_ends) {
-            for (std::size_t k = begin, j = end - 1; k < end; j = k++) {
-                Eigen::Vector2d a = (seen[i].vertices[j] - low_).cwiseProduct(per_cell_);
-                Eigen::Vector2d b = (seen[i].vertices[k] - low_).cwiseProduct(per_cell_);
-                if (a.y() > b.y()) std::swap(a, b);
-                const int from = std::max(0, static_cast<int>(std::ceil(std::max(a.y(), -1.0))));
-                const int to = std::min(kRows, static_cast<int>(std::ceil(std::min(b.y(), kRows + 1.0))));
-                for (int y = from; y < to; ++y) {
-                    const double x = a.x() + (y - a.y()) * (b.x() - a.x()) / (b.y() - a.y());
-                    const double until = std::clamp(std::ceil(x), 0.0, static_cast<double>(kColumns));
-                    for (int c = 0; c < static_cast<int>(until); ++c)
-                        inside[static_cast<std::size_t>(y * kColumns + c)] ^= 1;
-                }
-            }
-            begin = end;
-        }
-        for (int y = 0; y < kHeight; ++y) {
-            for (int x = 0; x < kWidth; ++x) {
-                const auto corner = static_cast<std::size_t>(y * kColumns + x);
-                if ((inside[corner] & inside[corner + 1] & inside[corner + kColumns] &
-                     inside[corner + kColumns + 1]) == 0)
-                    continue;
-                const Eigen::Vector3d ray(low_.x() + (x + 0.5) / per_cell_.x(),
-                                          low_.y() + (y + 0.5) / per_cell_.y(), 1);
-                const double depth = -regions[i].plane.d / regions[i].plane.normal.dot(ray);
-                const auto cell = static_cast<std::size_t>(y * kWidth + x);
-                if (!(depth > 0 && depth < nearest[cell])) continue;
-                nearest[cell] = depth;
-                cells_[cell] = static_cast<std::uint8_t>(i);
-            }
-        }
-    }
-}
 
 StoredKeyframe stored(std::int64_t utime, const std::vector<PlanarRegion>& regions) {
     StoredKeyframe keyframe;
@@ -241,4 +172,4 @@ std::size_t memory_bytes(const StoredKeyframe& keyframe) {
            keyframe.vertices.capacity() * sizeof(std::int16_t);
 }
 
-}  // namespace planemap
+}  // namespace planemap::map

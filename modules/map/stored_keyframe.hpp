@@ -9,8 +9,15 @@
 
 #include "core/keyframe.hpp"
 #include "map/evidence_grid.hpp"
+#include "map/sight.hpp"
 
-namespace planemap {
+namespace planemap::map {
+
+/// Further from the world's origin, doubles no longer hold second moments to a millimetre.
+constexpr double kMaxCoordinate_m = 1e5;
+inline bool is_near_origin(const Eigen::Vector3d& p_world) {
+    return p_world.norm() <= kMaxCoordinate_m;  // not NaN
+}
 
 /// A planar region in 96 bytes and 4 a vertex of its outline, camera frame. Single precision about the
 /// region's own centre and axes: a micrometre at ten metres.
@@ -27,44 +34,6 @@ struct StoredRegion {
     std::uint32_t first = 0, last = 0;  ///< of StoredKeyframe::vertices; last is one past the end
     int plane = -1;                     ///< id of the map plane it went to; -1: none
     int keyframes = 1;                  ///< that saw it: its own, and those that handed theirs on to it
-};
-
-/// Which way regions lie, seen from the camera: a coarse image of them, to tell what was looked through.
-class Sight {
-  public:
-    static constexpr int kWidth = 32, kHeight = 24;  ///< cells
-    static constexpr std::uint8_t kNone = 255;
-
-    /// From the outlines of the regions, camera frame; the first 255 count. A cell holds a region that covers
-    /// all of it, the nearest where several do.
-    explicit Sight(const std::vector<PlanarRegion>& regions);
-    Sight() = default;
-
-    /// The region that fills the cell a point is seen in, or kNone. Camera frame.
-    std::uint8_t region_at(const Eigen::Vector3d& p_camera) const {
-        if (!(p_camera.z() > 0.05)) return kNone;
-        const double x = (p_camera.x() / p_camera.z() - low_.x()) * per_cell_.x();
-        const double y = (p_camera.y() / p_camera.z() - low_.y()) * per_cell_.y();
-        if (!(x >= 0 && y >= 0 && x < kWidth && y < kHeight)) return kNone;
-        return cells_[static_cast<std::size_t>(static_cast<int>(y) * kWidth + static_cast<int>(x))];
-    }
-    /// The directions it covers: x / z and y / z in the camera.
-    const Eigen::Vector2d& low() const { return low_; }
-    Eigen::Vector2d high() const {
-        return low_ + Eigen::Vector2d(kWidth / per_cell_.x(), kHeight / per_cell_.y());
-    }
-
-    /// Distance from the camera to the farthest of it, metres.
-    double reach() const { return reach_; }
-
-  private:
-    double reach_ = 0;
-    Eigen::Vector2d low_ = Eigen::Vector2d::Zero(), per_cell_ = Eigen::Vector2d::Ones();
-    std::array<std::uint8_t, kWidth* kHeight> cells_ = [] {
-        std::array<std::uint8_t, kWidth * kHeight> none{};
-        none.fill(kNone);
-        return none;
-    }();
 };
 
 struct StoredKeyframe {
@@ -111,4 +80,4 @@ void outline_in(const Pose& a_from_box, const StoredRegion& region, const Stored
 /// Bytes it takes, by capacity.
 std::size_t memory_bytes(const StoredKeyframe& keyframe);
 
-}  // namespace planemap
+}  // namespace planemap::map

@@ -19,7 +19,8 @@ Pipeline::Pipeline(Bus& bus, const PipelineOptions& options)
     } else if (options.with_graph) {
         graph_ = std::make_unique<GraphShell>(bus, options.graph);
     }
-    if ((graph_ || given_poses_) && options.with_map) map_ = std::make_unique<MapShell>(bus, options.map);
+    if ((graph_ || given_poses_) && options.with_map)
+        map_ = std::make_unique<map::MapShell>(bus, options.map);
     if (options.with_octomap) octomap_ = std::make_unique<OctomapShell>(bus, decoder_, options.octomap);
     bus_.subscribe(channels::kOdometry, [this, keep = options.keep_estimates](const RawMessage& message) {
         if (!keep) estimates_.clear();

@@ -24,7 +24,7 @@ struct PipelineOptions {
     segmentation::SegmentationOptions segmentation;
     odometry::OdometryOptions odometry;
     GraphOptions graph;
-    MapShellOptions map;
+    planemap::map::MapShellOptions map;
     OctomapOptions octomap;
     bool with_graph = true;           ///< without it there is no map either
     std::optional<Trajectory> poses;  ///< instead of the graph's
@@ -67,7 +67,7 @@ class Pipeline {
     odometry::OdometryShell& odometry() { return odometry_; }
     GraphShell* graph() { return graph_.get(); }                    ///< nullptr without one
     const GivenPoses* given_poses() { return given_poses_.get(); }  ///< nullptr without
-    MapShell& map() { return *map_; }  ///< precondition: with_map, and a graph or given poses
+    planemap::map::MapShell& map() { return *map_; }  ///< precondition: with_map, and a graph or given poses
     OctomapShell* octomap() { return octomap_.get(); }
 
   private:
@@ -77,7 +77,7 @@ class Pipeline {
     odometry::OdometryShell odometry_;
     std::unique_ptr<GraphShell> graph_;
     std::unique_ptr<GivenPoses> given_poses_;
-    std::unique_ptr<MapShell> map_;
+    std::unique_ptr<planemap::map::MapShell> map_;
     std::unique_ptr<OctomapShell> octomap_;
     std::vector<OdometryEstimate> estimates_;
     KeyframePoses poses_;  ///< by the graph's trajectories

@@ -5,7 +5,7 @@
 
 #include <random>
 
-namespace planemap {
+namespace planemap::map {
 namespace {
 
 /// A bitmap of 3 words from word -1 on, and the same cells as a Mask; cell (x, y) of the one is (x + 64, y +
@@ -93,4 +93,4 @@ TEST(Bitmap, Empty) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::map

@@ -9,7 +9,7 @@
 #include "core/files.hpp"
 #include "temporary_folder.hpp"
 
-namespace planemap {
+namespace planemap::map {
 namespace {
 
 TEST(EarlierMap, HasTwoNamesUntilItIsReplacedAndTheNewestFiveAreKept) {
@@ -44,4 +44,4 @@ TEST(EarlierMap, WhatIsNotThereIsAnErrorThatNamesIt) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::map

@@ -5,9 +5,9 @@
 
 #include <random>
 
-#include "map/scene.hpp"
+#include "core/scene.hpp"
 
-namespace planemap {
+namespace planemap::map {
 namespace {
 
 using scene::rectangle_ring;
@@ -18,13 +18,13 @@ int add(EvidenceGrid& grid, const Outline& outline, int strength = 0) {
     return grid.add(polygon, strength);
 }
 
-template <typename SeenThrough>
-int doubt(EvidenceGrid& grid, int strength, const SeenThrough& seen_through) {
+template <typename IsMissed>
+int add_misses(EvidenceGrid& grid, int strength, const IsMissed& is_missed) {
     std::vector<EvidenceGrid::Block> blocks;
-    grid.doubtful_blocks({-1e9, -1e9}, {1e9, 1e9}, blocks);
+    grid.uncertain_blocks({-1e9, -1e9}, {1e9, 1e9}, blocks);
     int lost = 0;
     for (const EvidenceGrid::Block& block : blocks)
-        if (seen_through(block.middle)) lost += grid.doubt(block, strength);
+        if (is_missed(block.middle)) lost += grid.add_misses(block, strength);
     return lost;
 }
 
@@ -82,7 +82,7 @@ TEST(EvidenceGrid, GrowsAndCounts) {
     EXPECT_NEAR(area(grid.outline(twice)), 0.5 + 1, 1e-9);
     EXPECT_NEAR(area(grid.outline({})), 6, 1e-9);
     for (int i = 0; i < 300; ++i) add(grid, Outline{{rectangle_ring(0, 0, 1, 1)}}, i % 3);
-    EXPECT_EQ(hits(0.2, 0.5), EvidenceGrid::kMaxCount);
+    EXPECT_EQ(hits(0.2, 0.5), EvidenceCells::kMaxCount);
     EXPECT_EQ(hits(4.7, 0.5), 2);
 }
 
@@ -122,35 +122,35 @@ TEST(EvidenceGrid, SliversNeedSupport) {
     EXPECT_NEAR(area(grid.outline(every_cell())), 1.05, 1e-9) << "seen again and again";
 }
 
-TEST(EvidenceGrid, WhatIsLookedThroughMoreOftenThanSeenGoes) {
+TEST(EvidenceGrid, WhatIsMissedMoreOftenThanHitGoes) {
     EvidenceGrid grid(Pose::Identity(), 0.025);
     add(grid, Outline{{rectangle_ring(0, 0, 2, 1)}});
     const auto left = [](const Eigen::Vector2d& p) { return p.x() < 1; };
-    EXPECT_EQ(doubt(grid, 0, left), 0) << "as often looked through as seen";
+    EXPECT_EQ(add_misses(grid, 0, left), 0) << "as many misses as hits";
     EXPECT_NEAR(area(grid.outline({})), 2, 1e-9);
-    EXPECT_EQ(doubt(grid, 0, left), 1600);
+    EXPECT_EQ(add_misses(grid, 0, left), 1600);
     EXPECT_NEAR(area(grid.outline({})), 1, 1e-9);
-    EXPECT_EQ(doubt(grid, 0, left), 0) << "what is gone is not doubted again";
+    EXPECT_EQ(add_misses(grid, 0, left), 0) << "what is gone gets no more misses";
     EXPECT_EQ(grid.counts({0.5, 0.5}).misses, 2);
     EXPECT_EQ(grid.counts({1.5, 0.5}).misses, 0);
     for (int i = 0; i < 3; ++i) add(grid, Outline{{rectangle_ring(0, 0, 2, 1)}}, 2);
     EXPECT_NEAR(area(grid.outline({})), 2, 1e-9) << "seen again, from near";
-    for (int i = 0; i < 30; ++i) doubt(grid, 2, left);
-    EXPECT_NEAR(area(grid.outline({})), 2, 1e-9) << "beyond doubt";
+    for (int i = 0; i < 30; ++i) add_misses(grid, 2, left);
+    EXPECT_NEAR(area(grid.outline({})), 2, 1e-9) << "certain";
 }
 
-TEST(EvidenceGrid, DoubtsOnlyWhereItIsAskedTo) {
+TEST(EvidenceGrid, MissesCountOnlyWhereTheyAre) {
     const auto always = [](const Eigen::Vector2d&) { return true; };
     EvidenceGrid whole(Pose::Identity(), 0.025), part = whole;
     for (EvidenceGrid* grid : {&whole, &part}) add(*grid, Outline{{rectangle_ring(-3, -1, 3, 1)}});
-    doubt(whole, 1, always);
+    add_misses(whole, 1, always);
     EXPECT_TRUE(whole.outline({}).empty());
     std::vector<EvidenceGrid::Block> lower, beyond;
-    part.doubtful_blocks({-10, -10}, {10, -0.1}, lower);
-    for (const EvidenceGrid::Block& block : lower) part.doubt(block, 1);
+    part.uncertain_blocks({-10, -10}, {10, -0.1}, lower);
+    for (const EvidenceGrid::Block& block : lower) part.add_misses(block, 1);
     EXPECT_NEAR(area(part.outline({})), 6, 0.7) << "the upper half is left";
     EXPECT_FALSE(contains(part.outline({}), {0, -0.5}));
-    part.doubtful_blocks({5, 5}, {6, 6}, beyond);
+    part.uncertain_blocks({5, 5}, {6, 6}, beyond);
     EXPECT_TRUE(beyond.empty());
 }
 
@@ -180,4 +180,4 @@ TEST(RingsCross, TellsCrossingFromTouching) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::map

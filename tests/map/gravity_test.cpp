@@ -5,10 +5,10 @@
 
 #include <limits>
 
+#include "core/furniture.hpp"
 #include "core/random_values.hpp"
-#include "map/furniture.hpp"
 
-namespace planemap {
+namespace planemap::map {
 namespace {
 
 using scene::kDegree;
@@ -105,4 +105,4 @@ TEST(FindUp, LeavesOutWhatIsNotFinite) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::map

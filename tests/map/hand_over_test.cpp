@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "map/scene.hpp"
+#include "core/scene.hpp"
 
-namespace planemap {
+namespace planemap::map {
 namespace {
 
 using scene::camera_at;
@@ -119,4 +119,4 @@ TEST(HandOver, WhatIsOnNoPlaneEnds) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::map

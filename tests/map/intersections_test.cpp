@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "map/scene.hpp"
+#include "core/scene.hpp"
 
-namespace planemap {
+namespace planemap::map {
 namespace {
 
 using scene::facing;
@@ -93,4 +93,4 @@ TEST(Intersections, CrossingPlanesMeetInside) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::map

@@ -5,10 +5,10 @@
 
 #include <limits>
 
+#include "core/furniture.hpp"
 #include "core/random_values.hpp"
-#include "map/furniture.hpp"
 
-namespace planemap {
+namespace planemap::map {
 namespace {
 
 using scene::facing_down;
@@ -27,7 +27,7 @@ std::string labels(const PlaneMap& map) {
 PlaneMap named(const std::vector<Rectangle>& room, const std::vector<Pose>& poses,
                const Pose& world_from_room = Pose::Identity()) {
     PlaneMap map = scene::map_of(room, world_from_room);
-    name_planes(map, scene::moved(world_from_room, poses));
+    label_planes(map, scene::moved(world_from_room, poses));
     return map;
 }
 
@@ -52,7 +52,7 @@ std::vector<Rectangle> furnished() {
 }
 constexpr const char* kFurnished = "wwwwfchhowohh";
 
-TEST(NamePlanes, OfAFurnishedRoomInAnyWorldAndAtAnyPitch) {
+TEST(LabelPlanes, OfAFurnishedRoomInAnyWorldAndAtAnyPitch) {
     test::Random random(1);
     for (int i = 0; i < 20; ++i) {
         const Pose world_from_room = random.pose();
@@ -64,23 +64,23 @@ TEST(NamePlanes, OfAFurnishedRoomInAnyWorldAndAtAnyPitch) {
     }
 }
 
-TEST(NamePlanes, GivesTheSameTwice) {
+TEST(LabelPlanes, GivesTheSameTwice) {
     PlaneMap a = named(furnished(), scene::looking_around(1.4, 0.5)), b = a;
-    name_planes(b, scene::looking_around(1.4, 0.5));
+    label_planes(b, scene::looking_around(1.4, 0.5));
     EXPECT_EQ(labels(a), labels(b));
     EXPECT_EQ(a.up, b.up);
-    name_planes(b, {});
+    label_planes(b, {});
     EXPECT_EQ(labels(b), std::string(b.planes.size(), 'u')) << "earlier names are not kept";
 }
 
-TEST(NamePlanes, FloorInPiecesAndAtTwoHeights) {
+TEST(LabelPlanes, FloorInPiecesAndAtTwoHeights) {
     const std::vector<Rectangle> room =
         scene::walls(6, 2) + std::vector<Rectangle>{level(-4, 0, 0, 2, 2), level(2, 0, 0.04, 2, 2),
                                                     level(5, 0, -0.06, 0.3, 0.3), level(0, 1, 0.2, 0.4, 0.4)};
     EXPECT_EQ(labels(named(room, scene::looking_around(1.4, 0.4))), "wwwwfffh");
 }
 
-TEST(NamePlanes, ALongFloorThatTiltsIsOneFloor) {
+TEST(LabelPlanes, ALongFloorThatTiltsIsOneFloor) {
     // Drift: the further piece is in the plane of the nearer one, 35 cm lower.
     Pose tilted = Pose::Identity();
     tilted.rotate(Eigen::AngleAxisd(1 * kDegree, Eigen::Vector3d::UnitY()));
@@ -89,7 +89,7 @@ TEST(NamePlanes, ALongFloorThatTiltsIsOneFloor) {
     EXPECT_EQ(labels(named(scene::walls(25, 2) + floors, scene::looking_around(1.4, 0.4))), "wwwwff");
 }
 
-TEST(NamePlanes, WithoutAFloorATableIsNone) {
+TEST(LabelPlanes, WithoutAFloorATableIsNone) {
     const std::vector<Pose> poses = scene::looking_around(1.4, 0.4);
     const Rectangle table = level(1, 0, 0.75, 0.8, 0.5);
     EXPECT_EQ(labels(named({table}, poses)), "h");
@@ -100,7 +100,7 @@ TEST(NamePlanes, WithoutAFloorATableIsNone) {
     EXPECT_EQ(labels(named({table, level(0, 1, 0, 0.5, 0.5)}, poses)), "hf") << "a little of the floor";
 }
 
-TEST(NamePlanes, WithoutAFloorThereAreWallsAndACeiling) {
+TEST(LabelPlanes, WithoutAFloorThereAreWallsAndACeiling) {
     EXPECT_EQ(
         labels(named(scene::walls(3, 2) + std::vector<Rectangle>{facing_down(level(0, 0, 2.5, 3, 2)),
                                                                  facing_down(level(1, 1, 0.72, 0.8, 0.8))},
@@ -108,7 +108,7 @@ TEST(NamePlanes, WithoutAFloorThereAreWallsAndACeiling) {
         "wwwwch");
 }
 
-TEST(NamePlanes, FromAsLowAsARobot) {
+TEST(LabelPlanes, FromAsLowAsARobot) {
     // Its camera sees the underside of a table from below; that is no ceiling, with the walls above it.
     const std::vector<Pose> poses = scene::looking_around(0.3, 0.1);
     const Rectangle under = facing_down(level(1, 1, 0.72, 1, 0.8));
@@ -117,7 +117,7 @@ TEST(NamePlanes, FromAsLowAsARobot) {
     EXPECT_EQ(labels(named(scene::walls(3, 2) + std::vector<Rectangle>{under}, poses)), "wwwwh");
 }
 
-TEST(NamePlanes, TwoStoreysAndStairs) {
+TEST(LabelPlanes, TwoStoreysAndStairs) {
     std::vector<Rectangle> house = scene::walls(4, 3, 0, 2.5) + scene::walls(4, 3, 2.8, 2.4);
     house = house + std::vector<Rectangle>{level(-1, 0, 0, 3, 3), facing_down(level(-1, 0, 2.5, 3, 3)),
                                            level(-1, 0, 2.8, 3, 3), facing_down(level(0, 0, 5.2, 4, 3)),
@@ -133,24 +133,24 @@ TEST(NamePlanes, TwoStoreysAndStairs) {
     EXPECT_EQ(from_below[10], 'h');
 }
 
-TEST(NamePlanes, AFewCentimetresOfAMirrorBelowTheFloorDoNotMatter) {
+TEST(LabelPlanes, AFewCentimetresOfAMirrorBelowTheFloorDoNotMatter) {
     EXPECT_EQ(labels(named(furnished() + std::vector<Rectangle>{level(0, 1, -0.8, 0.4, 0.4)},
                            scene::looking_around(1.4, 0.3))),
               std::string(kFurnished) + "h");
 }
 
-TEST(NamePlanes, OfNothing) {
+TEST(LabelPlanes, OfNothing) {
     PlaneMap map;
-    name_planes(map, scene::looking_around(1.4, 0));
+    label_planes(map, scene::looking_around(1.4, 0));
     EXPECT_TRUE(map.up.isZero());
     map = scene::map_of(furnished());
     map.up = Eigen::Vector3f::UnitX();
-    name_planes(map, {});
+    label_planes(map, {});
     EXPECT_TRUE(map.up.isZero()) << "without cameras nothing says which side is up";
     EXPECT_EQ(labels(map), std::string(map.planes.size(), 'u'));
 }
 
-TEST(NamePlanes, LeavesOutWhatIsNotFinite) {
+TEST(LabelPlanes, LeavesOutWhatIsNotFinite) {
     PlaneMap map = scene::map_of(furnished());
     map.planes[0].center.setConstant(std::numeric_limits<float>::quiet_NaN());
     map.planes[6].normal.setConstant(std::numeric_limits<float>::infinity());
@@ -159,9 +159,9 @@ TEST(NamePlanes, LeavesOutWhatIsNotFinite) {
     map.planes[9].normal.setZero();
     std::vector<Pose> poses = scene::looking_around(1.4, 0.3);
     poses[0].translation().setConstant(std::numeric_limits<double>::quiet_NaN());
-    name_planes(map, poses);
+    label_planes(map, poses);
     EXPECT_EQ(labels(map), "uwwwfcuuouohh");
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::map

@@ -5,13 +5,13 @@
 
 #include <memory>
 
+#include "core/furniture.hpp"
 #include "core/random_values.hpp"
-#include "map/furniture.hpp"
 #include "map/labels.hpp"
 #include "map/map.hpp"
 #include "map/queries.hpp"
 
-namespace planemap {
+namespace planemap::map {
 namespace {
 
 /// A storey of 40 x 30 m: rooms' walls, tables, shelves and floors, with ragged outlines of 32 vertices as
@@ -167,7 +167,7 @@ void name(benchmark::State& state) {
     PlaneMap map = storey(static_cast<int>(state.range(0)));
     const std::vector<Pose> poses = scene::looking_around(1.4, 0.3);
     for (auto _ : state) {
-        name_planes(map, poses);
+        label_planes(map, poses);
         benchmark::DoNotOptimize(map);
     }
 }
@@ -218,6 +218,6 @@ BENCHMARK(free_height)->Arg(300)->Unit(benchmark::kMicrosecond);
 BENCHMARK(gap)->Arg(300)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::map
 
 BENCHMARK_MAIN();

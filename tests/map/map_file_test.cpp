@@ -6,10 +6,10 @@
 #include <unistd.h>
 
 #include "core/files.hpp"
-#include "map/scene.hpp"
+#include "core/scene.hpp"
 #include "messages/log.hpp"
 
-namespace planemap {
+namespace planemap::map {
 namespace {
 
 using ::testing::HasSubstr;
@@ -87,4 +87,4 @@ TEST_F(MapFile, NeverCrashesOnSpoiltBytes) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::map

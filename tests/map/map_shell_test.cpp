@@ -14,7 +14,7 @@
 #include "messages/sample_messages.hpp"
 #include "shell_fixture.hpp"
 
-namespace planemap {
+namespace planemap::map {
 namespace {
 
 class MapShellTest : public test::ShellTest {
@@ -269,4 +269,4 @@ TEST_F(MapShellTest, AnOutputThatCannotBeWrittenIsAnErrorAtOnce) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::map

@@ -10,9 +10,9 @@
 #include <random>
 #include <set>
 
-#include "map/scene.hpp"
+#include "core/scene.hpp"
 
-namespace planemap {
+namespace planemap::map {
 namespace {
 
 using scene::camera_at;
@@ -494,6 +494,21 @@ TEST(PlaneMapper, ATrajectoryThatSharesNothingWithTheLastTakesNothingAway) {
     EXPECT_EQ(mapper.map().planes.size(), 5u);
 }
 
+/// The one that was to take over had been lost on its way: the process died.
+TEST(PlaneMapper, AReplacedKeyframeStaysWhenThereIsNoneToTakeOver) {
+    PlaneMapper mapper;
+    const Pose pose = camera_at({0, 0, 1});
+    mapper.add(keyframe(0, room(), pose));
+    mapper.update(trajectory_of({pose, pose}));
+    KeyframeTrajectory without_it;
+    without_it.keyframes = {{1, 0, pose}};
+    mapper.update(without_it);
+    EXPECT_EQ(mapper.replaced(), 0u);
+    EXPECT_EQ(mapper.keyframes(), 1u);
+    mapper.settle();
+    EXPECT_EQ(mapper.map().planes.size(), 5u);
+}
+
 TEST(PlaneMapper, GoesOnFromAMap) {
     PlaneMapper before;
     for (int i = 0; i < 4; ++i) {
@@ -702,4 +717,4 @@ TEST(MapOptions, NamesAllBadFields) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::map

@@ -5,9 +5,9 @@
 
 #include <numbers>
 
-#include "map/scene.hpp"
+#include "core/scene.hpp"
 
-namespace planemap {
+namespace planemap::map {
 namespace {
 
 using scene::facing;
@@ -92,4 +92,4 @@ TEST(Merging, BoxesWithoutExtentAreCompared) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::map

@@ -4,10 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/furniture.hpp"
 #include "core/random_values.hpp"
-#include "map/furniture.hpp"
 
-namespace planemap {
+namespace planemap::map {
 namespace {
 
 using scene::kDegree;
@@ -265,4 +265,4 @@ TEST(MapQueries, OfDegenerateMaps) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::map

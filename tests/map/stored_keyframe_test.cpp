@@ -3,24 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
+#include "map/wall_and_plate.hpp"
 
-#include "map/scene.hpp"
-
-namespace planemap {
+namespace planemap::map {
 namespace {
 
-using scene::facing;
-using scene::Rectangle;
-
-/// A wall of 2 x 1 m three metres ahead, with a hole, a little turned, and a small plate a metre before it.
-std::vector<PlanarRegion> two_regions() {
-    const Rectangle wall{
-        facing({0, 0, 3}, {0.2, 0.1, -1}, {1, 0, 0}), 1, 0.5, {scene::rectangle_ring(-0.3, -0.2, 0.1, 0.2)}};
-    const Rectangle plate{facing({0.5, 0.1, 2}, {0, 0, -1}, {1, 0, 0}), 0.25, 0.2, {}};
-    return {scene::region_of(wall, Pose::Identity(), 0.02, 0.004),
-            scene::region_of(plate, Pose::Identity(), 0.02, 0.004)};
-}
+using samples::two_regions;
 
 TEST(StoredKeyframe, KeepsRegionsToAMicrometreAndOutlinesToAMillimetre) {
     const std::vector<PlanarRegion> regions = two_regions();
@@ -60,24 +48,5 @@ TEST(StoredKeyframe, ARegionTakesAtMost96BytesAnd4AVertex) {
     EXPECT_EQ(keyframe.vertices.size(), 2 * 12 + 3u) << "three rings of four vertices";
 }
 
-TEST(Sight, TellsWhatIsSeenWhere) {
-    const std::vector<PlanarRegion> regions = two_regions();
-    const Sight sight(regions);
-    EXPECT_EQ(sight.region_at({-0.6, 0, 3}), 0);
-    EXPECT_EQ(sight.region_at({-0.3, 0, 1.5}), 0) << "before it, on the same ray";
-    EXPECT_EQ(sight.region_at({0.5, 0.1, 2}), 1) << "the nearer one";
-    EXPECT_EQ(sight.region_at({-0.1, 0, 3}), Sight::kNone) << "through the hole";
-    EXPECT_EQ(sight.region_at({3, 0, 3}), Sight::kNone);
-    EXPECT_EQ(sight.region_at({0, 0, -3}), Sight::kNone);
-    EXPECT_EQ(sight.region_at({std::numeric_limits<double>::quiet_NaN(), 0, 1}), Sight::kNone);
-    EXPECT_EQ(Sight().region_at({0, 0, 1}), Sight::kNone);
-}
-
-TEST(Sight, IgnoresWhatReachesBehindTheCamera) {
-    const Rectangle floor{facing({0, 1, 0}, {0, -1, 0}, {1, 0, 0}), 3, 3, {}};
-    const Sight sight({scene::region_of(floor, Pose::Identity(), 0.1)});
-    EXPECT_EQ(sight.region_at({0, 1, 2}), Sight::kNone);
-}
-
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::map

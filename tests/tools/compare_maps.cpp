@@ -10,7 +10,8 @@
 int main(int argc, char** argv) {
     return planemap::run_main("compare_maps", [&] {
         if (argc != 3) throw std::invalid_argument("two plane_map.lcmlog, please");
-        const planemap::PlaneMap a = planemap::read_plane_map(argv[1]), b = planemap::read_plane_map(argv[2]);
+        const planemap::PlaneMap a = planemap::map::read_plane_map(argv[1]),
+                                 b = planemap::map::read_plane_map(argv[2]);
         std::size_t agree = 0;
         double worst_iou = 1;
         for (const planemap::PlanePair& pair : planemap::pair_planes(a, b)) {

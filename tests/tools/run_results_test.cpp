@@ -42,7 +42,7 @@ class RunResults : public test::Programs {
         return found;
     }
     void expect_essentials(const std::filesystem::path& folder) {
-        EXPECT_GT(read_plane_map(folder / "plane_map.lcmlog").planes.size(), 0u);
+        EXPECT_GT(map::read_plane_map(folder / "plane_map.lcmlog").planes.size(), 0u);
         EXPECT_GT(read_trajectory(folder / "trajectory.txt").size(), 0u);
         EXPECT_GT(nlohmann::json::parse(read_file(folder / "planes.json")).at("planes").size(), 0u);
     }

@@ -26,7 +26,7 @@ double pipeline_ms(Pipeline& pipeline) {
 }
 
 GrowthPoint point_at(std::int64_t frames, Pipeline& pipeline) {
-    const PlaneMapper& mapper = pipeline.map().mapper();
+    const map::PlaneMapper& mapper = pipeline.map().mapper();
     GrowthPoint point;
     point.frames = frames;
     point.keyframes = static_cast<int>(pipeline.keyframes().keyframes.size());

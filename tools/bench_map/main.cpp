@@ -99,7 +99,7 @@ void add_flags(Flags& flags, Arguments& arguments) {
     planemap::add_flags(flags, arguments.pipeline.segmentation, "segmentation-");
     planemap::add_flags(flags, arguments.pipeline.odometry, "odometry-");
     planemap::add_flags(flags, arguments.pipeline.graph, "graph-");
-    planemap::add_flags(flags, arguments.pipeline.map.map, "map-");
+    planemap::map::add_flags(flags, arguments.pipeline.map.map, "map-");
 }
 
 /// Says on stderr how far a sequence is, every 100 frames.

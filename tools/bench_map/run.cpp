@@ -16,7 +16,8 @@ namespace planemap::bench_map {
 
 namespace {
 
-MapRun map_run_of(const PlaneMapper& mapper, const Histogram& update_ms, const KeyframeTrajectory& poses) {
+MapRun map_run_of(const map::PlaneMapper& mapper, const Histogram& update_ms,
+                  const KeyframeTrajectory& poses) {
     MapRun run;
     run.map = mapper.map();
     run.poses = poses;
@@ -56,10 +57,10 @@ SequenceRun run_sequence(const std::string& input_name, const RunOptions& option
     run.frames = input->frames();
     run.truth = input->truth();
 
-    const MapOptions& map_options = options.pipeline.map.map;
+    const map::MapOptions& map_options = options.pipeline.map.map;
     OctomapShell* octomap = pipeline.octomap();
-    MapShell& map = pipeline.map();
-    run.estimated = map_run_of(map.mapper(), map.status().work_cpu_ms(), pipeline.keyframes());
+    map::MapShell& shell = pipeline.map();
+    run.estimated = map_run_of(shell.mapper(), shell.status().work_cpu_ms(), pipeline.keyframes());
     run.estimated.rebuild_ms = time_rebuild(run.keyframes, run.estimated.poses, map_options);
     if (octomap != nullptr) run.estimated.coverage = coverage_at(run.estimated, octomap->builder());
     if (!options.true_poses || !run.truth) return run;
@@ -71,8 +72,8 @@ SequenceRun run_sequence(const std::string& input_name, const RunOptions& option
 }
 
 MapRun map_at(const std::vector<Keyframe>& keyframes, const KeyframeTrajectory& poses,
-              const MapOptions& options) {
-    PlaneMapper mapper(options);
+              const map::MapOptions& options) {
+    map::PlaneMapper mapper(options);
     Histogram update_ms;
     KeyframeTrajectory so_far = poses;
     so_far.keyframes.clear();
@@ -92,9 +93,9 @@ MapRun map_at(const std::vector<Keyframe>& keyframes, const KeyframeTrajectory& 
 }
 
 double time_rebuild(const std::vector<Keyframe>& keyframes, const KeyframeTrajectory& poses,
-                    const MapOptions& options) {
+                    const map::MapOptions& options) {
     constexpr int kTimes = 6;
-    PlaneMapper mapper(options);
+    map::PlaneMapper mapper(options);
     for (const Keyframe& keyframe : keyframes) mapper.add(keyframe);
     mapper.update(poses);
     KeyframeTrajectory moved = poses;

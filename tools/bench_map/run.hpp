@@ -45,11 +45,11 @@ SequenceRun run_sequence(const std::string& input, const RunOptions& options,
 /// A map of keyframes where the poses say, one after the other as they would arrive; without coverage.
 /// Keyframes without a pose are left out.
 MapRun map_at(const std::vector<Keyframe>& keyframes, const KeyframeTrajectory& poses,
-              const MapOptions& options);
+              const map::MapOptions& options);
 
 /// CPU time of mapping all keyframes anew because all of them moved (by 1 cm, to and fro), milliseconds:
 /// median of six times.
 double time_rebuild(const std::vector<Keyframe>& keyframes, const KeyframeTrajectory& poses,
-                    const MapOptions& options);
+                    const map::MapOptions& options);
 
 }  // namespace planemap::bench_map

@@ -112,7 +112,7 @@ class Observer {
     }
     SoakPoint point() {
         const PoseGraph& graph = pipeline_.graph()->graph();
-        const PlaneMapper& mapper = pipeline_.map().mapper();
+        const map::PlaneMapper& mapper = pipeline_.map().mapper();
         SoakPoint point;
         point.frames = frames_;
         point.lost = lost_;

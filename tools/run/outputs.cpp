@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/files.hpp"
-#include "map/export.hpp"
+#include "exports/exports.hpp"
 #include "map/map_file.hpp"
 #include "run/accuracy.hpp"
 #include "run/input.hpp"
@@ -71,12 +71,13 @@ std::int64_t tracked_frames(const Pipeline& pipeline) {
 }
 
 std::vector<Result> essential_results(Pipeline& pipeline) {
-    const PlaneMapper& mapper = pipeline.map().mapper();
+    const map::PlaneMapper& mapper = pipeline.map().mapper();
     return {
-        {"plane_map.lcmlog", [&mapper](const auto& file) { write_plane_map(file, mapper.map()); }},
+        {"plane_map.lcmlog", [&mapper](const auto& file) { map::write_plane_map(file, mapper.map()); }},
         {"trajectory.txt", [&pipeline](const auto& file) { write_trajectory(file, pipeline.trajectory()); }},
-        {"planes.json",
-         [&mapper](const auto& file) { write_file(file, planes_json(mapper.map(), mapper.sightings())); }}};
+        {"planes.json", [&mapper](const auto& file) {
+             write_file(file, exports::planes_json(mapper.map(), mapper.sightings()));
+         }}};
 }
 
 namespace {
@@ -132,13 +133,14 @@ std::vector<Result> further_results(const Input& input, Pipeline& pipeline, cons
         add("report.md", [&report] { return report_markdown(report); });
     }
     for (Result& truth : input.truth_results()) results.push_back(std::move(truth));
-    add("planes.ply", [&map, &pipeline] { return planes_ply(map, pipeline.trajectory()); });
-    add("planes.obj", [&map, &pipeline] { return planes_obj(map, pipeline.trajectory()); });
-    add("planes.mtl", [&map] { return planes_mtl(map); });
-    add("planes.glb", [&map, &pipeline] { return planes_glb(map, pipeline.trajectory()); });
-    add("floor_plan.geojson", [&map, &pipeline] { return floor_plan_geojson(map, pipeline.trajectory()); });
-    add("overhead.svg", [&map, &pipeline] { return overhead_svg(map, pipeline.trajectory()); });
-    add("map.svg", [&map, &pipeline] { return perspective_svg(map, pipeline.trajectory()); });
+    add("planes.ply", [&map, &pipeline] { return exports::planes_ply(map, pipeline.trajectory()); });
+    add("planes.obj", [&map, &pipeline] { return exports::planes_obj(map, pipeline.trajectory()); });
+    add("planes.mtl", [&map] { return exports::planes_mtl(map); });
+    add("planes.glb", [&map, &pipeline] { return exports::planes_glb(map, pipeline.trajectory()); });
+    add("floor_plan.geojson",
+        [&map, &pipeline] { return exports::floor_plan_geojson(map, pipeline.trajectory()); });
+    add("overhead.svg", [&map, &pipeline] { return exports::overhead_svg(map, pipeline.trajectory()); });
+    add("map.svg", [&map, &pipeline] { return exports::perspective_svg(map, pipeline.trajectory()); });
     if (pipeline.octomap() != nullptr)
         add("octomap.bt", [&pipeline] { return pipeline.octomap()->builder().bt(); });
     return results;
@@ -149,7 +151,7 @@ std::string why_poorer(const std::filesystem::path& folder, const Input& input, 
     const RunWorth run{input.frames(), tracked_frames(pipeline), !input.is_at_end()};
     const std::string why = why_not_replace(run, worth_in(folder));
     if (!why.empty() || !pipeline.map().mapper().map().planes.empty()) return why;
-    return may_hold_planes(folder / "plane_map.lcmlog") ? "no planes in its map" : "";
+    return map::may_hold_planes(folder / "plane_map.lcmlog") ? "no planes in its map" : "";
 }
 
 }  // namespace

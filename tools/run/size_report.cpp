@@ -157,7 +157,7 @@ std::string format(const char* pattern, double value) {
 }
 
 void add_sizes(Pipeline& pipeline, std::int64_t frames, Json& report) {
-    const PlaneMapper& mapper = pipeline.map().mapper();
+    const map::PlaneMapper& mapper = pipeline.map().mapper();
     const plane_map_t message = to_message(mapper.map(), 0);
     std::string bytes(static_cast<std::size_t>(message.getEncodedSize()), '\0');
     message.encode(bytes.data(), 0, message.getEncodedSize());

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "map/keyframe_store.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "core/replacement.hpp"
+
+namespace planemap::map {
+
+namespace {
+
+/// No depth camera sees a region that reaches further from its middle, nor more of them: a raster takes
+/// memory.
+constexpr double kMaxRegionReach_m = 25;
+constexpr std::size_t kMaxRegions = 256;
+constexpr std::size_t kMaxRingVertices = 32767;
+constexpr double kMaxPoints = 1e9;
+/// Keyframes between two that arrive.
+constexpr std::int64_t kMostMissed = 10000;
+
+bool is_near(const Pose& world_from_camera) {
+    return is_valid(world_from_camera) && is_near_origin(world_from_camera.translation());
+}
+
+bool is_in_map(const StoredKeyframe& keyframe) {
+    return keyframe.world_from_camera.has_value();
+}
+
+}  // namespace
+
+/// A valid region whose moments determine a plane, of a size and at a place that a sensor can see.
+bool KeyframeStore::is_usable(const PlanarRegion& region) const {
+    if (!is_valid(region) || !fit_plane(region.moments).valid) return false;
+    const double reach = std::min(max_extent_m_ / 2, kMaxRegionReach_m);
+    if (!(region.box.half_extents.norm() <= reach)) return false;
+    if (!is_near_origin(region.box.frame_from_box.translation())) return false;
+    // Moments, plane and box say the same.
+    const Eigen::Vector3d mean = region.moments.mean();
+    if (!(region.moments.count <= kMaxPoints)) return false;
+    if (!((mean - region.box.frame_from_box.translation()).norm() <= region.box.half_extents.norm() + 1))
+        return false;
+    if (!(std::abs(region.plane.signed_distance(mean)) <= 1)) return false;
+    return std::all_of(region.outline.rings.begin(), region.outline.rings.end(), [&](const Ring& ring) {
+        return ring.size() <= kMaxRingVertices &&
+               std::all_of(ring.begin(), ring.end(), [&](const auto& v) { return v.norm() <= reach; });
+    });
+}
+
+/// By falling number of points.
+std::vector<PlanarRegion> KeyframeStore::usable_regions(const Keyframe& keyframe, MapLosses& losses) const {
+    std::vector<PlanarRegion> regions;
+    for (const PlanarRegion& region : keyframe.regions) {
+        if (!is_usable(region)) {
+            ++losses.regions_refused;
+        } else if (regions.size() == kMaxRegions) {
+            ++losses.regions_too_many;
+        } else {
+            regions.push_back(region);
+        }
+    }
+    std::stable_sort(regions.begin(), regions.end(),
+                     [](auto& a, auto& b) { return a.moments.count > b.moments.count; });
+    return regions;
+}
+
+KeyframeStore::Arrival KeyframeStore::add(const Keyframe& keyframe, MapLosses& losses) {
+    if (keyframe.id <= retired_up_to_) {  // what it saw is in the planes
+        ++losses.keyframes_too_late;
+        return Arrival::kRefused;
+    }
+    if (newest_id_ >= 0 && keyframe.id - std::int64_t{newest_id_} > kMostMissed) {
+        ++losses.keyframes_far_ahead;
+        return Arrival::kRefused;
+    }
+    const auto earlier = keyframes_.find(keyframe.id);
+    const bool is_known = earlier != keyframes_.end() && is_in_map(earlier->second);
+    if (is_known && earlier->second.utime != keyframe.utime) {
+        // An odometry that started again: the pose is not its.
+        ++losses.keyframes_of_others;
+        return Arrival::kRefused;
+    }
+    newest_id_ = std::max(newest_id_, keyframe.id);
+    keyframes_[keyframe.id] = stored(keyframe.utime, usable_regions(keyframe, losses));
+    return is_known ? Arrival::kAgain : Arrival::kNew;
+}
+
+void KeyframeStore::set_pose(int id, const Pose& world_from_camera) {
+    if (is_near(world_from_camera)) poses_[id] = world_from_camera;
+}
+
+KeyframeStore::Motion KeyframeStore::update(const std::vector<KeyframePose>& named,
+                                            const MotionLimits& limits, MapLosses& losses) {
+    named_ = named;
+    Motion motion;
+    for (const KeyframePose& pose : named) {
+        if (pose.id <= retired_up_to_) continue;
+        if (!is_near(pose.world_from_camera)) {
+            ++losses.poses_refused;
+            continue;
+        }
+        poses_[pose.id] = pose.world_from_camera;
+        const auto kept = keyframes_.find(pose.id);
+        if (kept == keyframes_.end() || !is_in_map(kept->second)) continue;
+        const Pose change = kept->second.world_from_camera->inverse(Eigen::Isometry) * pose.world_from_camera;
+        motion.any = motion.any || !kept->second.world_from_camera->isApprox(pose.world_from_camera, 0);
+        motion.of_note = motion.of_note || change.translation().norm() > limits.distance_m ||
+                         rotation_angle(change) > limits.angle_rad;
+    }
+    return motion;
+}
+
+std::vector<StoredKeyframe> KeyframeStore::take_replaced(const std::vector<KeyframePose>& named) {
+    const std::vector<Replacement> replaced = replacements(named_, named);
+    std::set<int> gone;
+    for (const Replacement& replacement : replaced) gone.insert(replacement.id);
+    const bool some_stay = std::any_of(keyframes_.begin(), keyframes_.end(), [&](const auto& entry) {
+        return is_in_map(entry.second) && !gone.contains(entry.first);
+    });
+    std::vector<StoredKeyframe> leaving;
+    for (const Replacement& replacement : replaced) {
+        const auto kept = keyframes_.find(replacement.id);
+        const bool leaves = kept != keyframes_.end() && is_in_map(kept->second);
+        if (leaves && !some_stay) continue;
+        poses_.erase(replacement.id);
+        if (!leaves) continue;
+        leaving.push_back(std::move(kept->second));
+        keyframes_.erase(kept);
+    }
+    return leaving;
+}
+
+std::vector<StoredKeyframe*> KeyframeStore::nearest(const Pose& world_from_camera, std::size_t count) {
+    std::vector<std::pair<double, StoredKeyframe*>> near;
+    for (auto& [id, keyframe] : keyframes_) {
+        if (!is_in_map(keyframe)) continue;
+        const Pose apart = world_from_camera.inverse(Eigen::Isometry) * *keyframe.world_from_camera;
+        near.emplace_back(apart.translation().norm() + rotation_angle(apart), &keyframe);
+    }
+    std::stable_sort(near.begin(), near.end(), [](auto& a, auto& b) { return a.first < b.first; });
+    std::vector<StoredKeyframe*> result;
+    for (const auto& [distance, keyframe] : near)
+        if (result.size() < count) result.push_back(keyframe);
+    return result;
+}
+
+StoredKeyframe* KeyframeStore::place(int id) {
+    const auto pose = poses_.find(id);
+    const auto keyframe = keyframes_.find(id);
+    if (pose == poses_.end() || keyframe == keyframes_.end()) return nullptr;
+    keyframe->second.world_from_camera = pose->second;
+    return &keyframe->second;
+}
+
+void KeyframeStore::place_all() {
+    for (const auto& [id, keyframe] : keyframes_) place(id);
+}
+
+bool KeyframeStore::is_waiting(int id) const {
+    const auto keyframe = keyframes_.find(id);
+    return keyframe != keyframes_.end() && !is_in_map(keyframe->second);
+}
+
+std::size_t KeyframeStore::waiting() const {
+    return static_cast<std::size_t>(std::count_if(
+        keyframes_.begin(), keyframes_.end(), [](const auto& entry) { return !is_in_map(entry.second); }));
+}
+
+std::size_t KeyframeStore::drop_waiting(std::size_t most) {
+    std::size_t dropped = 0;
+    for (std::size_t n = waiting(); n > most; --n, ++dropped) {
+        keyframes_.erase(std::find_if(keyframes_.begin(), keyframes_.end(),
+                                      [](const auto& entry) { return !is_in_map(entry.second); }));
+    }
+    return dropped;
+}
+
+void KeyframeStore::retire_oldest() {
+    const int id = keyframes_.begin()->first;
+    retired_up_to_ = id;
+    poses_.erase(id);
+    keyframes_.erase(keyframes_.begin());
+}
+
+std::map<int, std::vector<int>> KeyframeStore::sightings() const {
+    std::map<int, std::vector<int>> result;
+    for (const auto& [id, keyframe] : keyframes_) {
+        for (const StoredRegion& region : keyframe.regions) {
+            if (region.plane < 0) continue;
+            std::vector<int>& ids = result[region.plane];
+            if (ids.empty() || ids.back() != id) ids.push_back(id);
+        }
+    }
+    return result;
+}
+
+std::size_t KeyframeStore::memory_bytes() const {
+    std::size_t bytes = poses_.size() * sizeof(std::pair<int, Pose>);
+    for (const auto& [id, keyframe] : keyframes_) bytes += map::memory_bytes(keyframe);
+    return bytes;
+}
+
+}  // namespace planemap::map

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <map>
+#include <vector>
+
+#include "core/keyframe.hpp"
+#include "map/map_losses.hpp"
+#include "map/stored_keyframe.hpp"
+
+namespace planemap::map {
+
+/// The keyframes that the map is made of, and all poses that are known, whichever comes first. A keyframe is
+/// in the map once it has StoredKeyframe::world_from_camera; until then it waits for its pose.
+class KeyframeStore {
+  public:
+    /// Regions that reach further than max_extent_m / 2 from their middle are refused.
+    explicit KeyframeStore(double max_extent_m) : max_extent_m_(max_extent_m) {}
+
+    enum class Arrival {
+        kRefused,
+        kNew,    ///< it is not in the map yet
+        kAgain,  ///< it replaces one that is in the map, which has to be made anew
+    };
+    /// Takes what the map needs of a keyframe, its largest regions first. Counts what it refuses.
+    Arrival add(const Keyframe& keyframe, MapLosses& losses);
+    /// Takes the pose of one keyframe; one that is none, or too far out, is ignored.
+    void set_pose(int id, const Pose& world_from_camera);
+
+    /// How far keyframes of the map are from where new poses put them.
+    struct Motion {
+        bool any = false;
+        bool of_note = false;  ///< beyond the limits
+    };
+    struct MotionLimits {
+        double distance_m = 0, angle_rad = 0;
+    };
+    /// Takes the poses of a trajectory; keyframes of the map stay where they are in it until place() is
+    /// called.
+    Motion update(const std::vector<KeyframePose>& named, const MotionLimits& limits, MapLosses& losses);
+
+    /// Keyframes of the map that the trajectory before named and this one does not (replacements()) leave it;
+    /// returns them. As long as there are others in the map to take over: else they stay. Call it before
+    /// update().
+    std::vector<StoredKeyframe> take_replaced(const std::vector<KeyframePose>& named);
+    /// The keyframes in the map nearest to a pose (a radian counts as a metre), the nearest first.
+    std::vector<StoredKeyframe*> nearest(const Pose& world_from_camera, std::size_t count);
+
+    /// Puts a keyframe of the store where its pose says; nullptr if that is not known.
+    StoredKeyframe* place(int id);
+    /// The same for all of them.
+    void place_all();
+    bool is_waiting(int id) const;
+    std::size_t waiting() const;
+    /// Lets the oldest waiting ones go until at most `most` wait; returns how many went.
+    std::size_t drop_waiting(std::size_t most);
+
+    /// Lets the oldest keyframe go for good: it and those before it are refused from now on.
+    void retire_oldest();
+
+    std::map<int, StoredKeyframe>& keyframes() { return keyframes_; }
+    const std::map<int, StoredKeyframe>& keyframes() const { return keyframes_; }
+    /// Of all keyframes named so far, in the store or not; world_from_camera by id.
+    const std::map<int, Pose>& poses() const { return poses_; }
+    /// Ids of the keyframes that saw each plane, ascending, by the plane's id.
+    std::map<int, std::vector<int>> sightings() const;
+    /// Bytes of all that is kept, by capacity, roughly.
+    std::size_t memory_bytes() const;
+
+  private:
+    bool is_usable(const PlanarRegion& region) const;
+    std::vector<PlanarRegion> usable_regions(const Keyframe& keyframe, MapLosses& losses) const;
+
+    double max_extent_m_;
+    std::map<int, StoredKeyframe> keyframes_;  ///< by id
+    std::map<int, Pose> poses_;
+    std::vector<KeyframePose> named_;                      ///< by the last trajectory
+    int newest_id_ = -1;                                   ///< the largest id of a keyframe so far
+    int retired_up_to_ = std::numeric_limits<int>::min();  ///< keyframes up to this id are gone for good
+};
+
+}  // namespace planemap::map

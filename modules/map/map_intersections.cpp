@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "map/map_intersections.hpp"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+namespace planemap::map {
+
+namespace {
+
+/// Triples of planes looked at for points in one update. Ten storeys with a hundred rooms each take a tenth.
+constexpr std::size_t kMaxTriples = std::size_t{1} << 22;
+
+}  // namespace
+
+void MapIntersections::update(PlaneMap& map, const std::vector<int>& changed_ids) {
+    if (changed_ids.empty()) return;
+    const auto is_changed = [&](int id) {
+        return std::binary_search(changed_ids.begin(), changed_ids.end(), id);
+    };
+    for (const int id : changed_ids) {
+        if (const MapPlane* plane = map.find(id)) {
+            shapes_[id] = PlaneShape(*plane);
+        } else {
+            shapes_.erase(id);
+        }
+    }
+    std::erase_if(map.lines,
+                  [&](auto& line) { return is_changed(line.plane_a) || is_changed(line.plane_b); });
+    std::erase_if(map.points, [&](auto& point) {
+        return std::any_of(point.planes.begin(), point.planes.end(), is_changed);
+    });
+    add_lines(map, changed_ids, is_changed);
+    add_points(map, is_changed);
+    map.lines.shrink_to_fit();
+    map.points.shrink_to_fit();
+}
+
+template <typename IsChanged>
+void MapIntersections::add_lines(PlaneMap& map, const std::vector<int>& changed_ids,
+                                 IsChanged is_changed) const {
+    for (const int a : changed_ids) {
+        const auto shape_a = shapes_.find(a);
+        if (shape_a == shapes_.end()) continue;
+        for (const auto& [b, shape_b] : shapes_) {
+            if (b == a || (b < a && is_changed(b))) continue;
+            const auto lines = intersection_lines(shape_a->second, shape_b, rules_);
+            map.lines.insert(map.lines.end(), lines.begin(), lines.end());
+        }
+    }
+    std::stable_sort(map.lines.begin(), map.lines.end(), [](auto& x, auto& y) {
+        return std::pair(x.plane_a, x.plane_b) < std::pair(y.plane_a, y.plane_b);
+    });
+}
+
+/// Points where three planes meet of which one changed. Rooms have a few for each plane; what could be a map,
+/// and has a thousand planes that all meet, would have more than can be found.
+template <typename IsChanged>
+void MapIntersections::add_points(PlaneMap& map, IsChanged is_changed) {
+    std::map<int, std::set<int>> above;  // adjacent planes with a larger id
+    for (const IntersectionLine& line : map.lines) above[line.plane_a].insert(line.plane_b);
+    std::size_t triples = 0;
+    const auto add_all = [&] {
+        for (const auto& [a, adjacent] : above) {
+            for (const int b : adjacent) {
+                const auto beyond = above.find(b);
+                if (beyond == above.end()) continue;
+                triples += beyond->second.size();
+                if (triples > kMaxTriples) return false;
+                for (const int c : beyond->second) {
+                    if (!adjacent.contains(c) || !(is_changed(a) || is_changed(b) || is_changed(c))) continue;
+                    const auto point =
+                        intersection_point(shapes_.at(a), shapes_.at(b), shapes_.at(c), rules_);
+                    if (point) map.points.push_back(*point);
+                }
+            }
+        }
+        return true;
+    };
+    left_out_points_ = !add_all();
+    std::sort(map.points.begin(), map.points.end(), [](auto& x, auto& y) { return x.planes < y.planes; });
+}
+
+const Plane* MapIntersections::plane(int id) const {
+    const auto shape = shapes_.find(id);
+    return shape == shapes_.end() ? nullptr : &shape->second.plane;
+}
+
+std::size_t MapIntersections::memory_bytes() const {
+    std::size_t bytes = 0;
+    for (const auto& [id, shape] : shapes_)
+        bytes += sizeof shape + shape.outline.vertex_count() * sizeof(Eigen::Vector2d);
+    return bytes;
+}
+
+}  // namespace planemap::map

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+
+namespace planemap::map {
+
+/// What a mapper left out, by the reason.
+struct MapLosses {
+    std::size_t regions_refused = 0;   ///< not valid, without a plane, or larger or farther than can be seen
+    std::size_t regions_too_many = 0;  ///< of one keyframe, after the 256th
+    std::size_t regions_too_far = 0;   ///< more than 100 km from the world's origin
+    std::size_t planes_refused = 0;    ///< of start_from()
+    std::size_t poses_refused = 0;     ///< of trajectories: no pose, or more than 100 km away
+    std::size_t keyframes_unplaced = 0;   ///< that waited for a pose while 4096 newer ones came
+    std::size_t keyframes_too_late = 0;   ///< that came again after they were folded
+    std::size_t keyframes_far_ahead = 0;  ///< with an id more than 10,000 after the largest one
+    std::size_t keyframes_of_others = 0;  ///< with the id of one in the map, and another time
+};
+
+}  // namespace planemap::map

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "map/plane_derivation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace planemap::map {
+
+namespace {
+
+/// An outline is traced again when so many cells came or went, as many as the smallest hole has (0.01 m2).
+constexpr int kCellsOfNote = 16;
+/// A plane whose points moved less keeps its outline and its intersections.
+constexpr double kMoveOfNote_m = 0.001;
+
+/// Root mean square distance of a set of points to any plane.
+double rms_to(const Plane& plane, const Moments& moments) {
+    const double spread = plane.normal.dot(moments.covariance() * plane.normal);
+    return std::sqrt(std::max(0.0, spread) + std::pow(plane.signed_distance(moments.mean()), 2));
+}
+
+/// An outline's x, y in frame a, seen along frame b's z in b's x, y.
+Outline transformed(const Pose& b_from_a, Outline outline) {
+    for (Ring& ring : outline.rings) {
+        for (Eigen::Vector2d& v : ring) v = (b_from_a * Eigen::Vector3d(v.x(), v.y(), 0)).head<2>();
+    }
+    return outline;
+}
+
+/// Gives a region the box along the axes of a frame, around the outline, and the outline in it.
+void set_outline(PlanarRegion& region, const Pose& world_from_axes, Outline outline_axes) {
+    Eigen::Vector2d low = Eigen::Vector2d::Constant(1e300), high = -low;
+    for (const Ring& ring : outline_axes.rings) {
+        for (const Eigen::Vector2d& v : ring) {
+            low = low.cwiseMin(v);
+            high = high.cwiseMax(v);
+        }
+    }
+    const Eigen::Vector2d middle = 0.5 * (low + high), half = 0.5 * (high - low);
+    for (Ring& ring : outline_axes.rings) {
+        for (Eigen::Vector2d& v : ring) v -= middle;
+    }
+    region.box.frame_from_box = world_from_axes;
+    region.box.frame_from_box.translation() = world_from_axes * Eigen::Vector3d(middle.x(), middle.y(), 0);
+    region.box.half_extents << half, 0;
+    region.outline = std::move(outline_axes);
+}
+
+}  // namespace
+
+std::optional<MapPlane> derived_plane(const PlaneEstimate& estimate, const DerivationRules& rules) {
+    if (estimate.keyframes < rules.min_keyframes) return std::nullopt;
+    const Outline outline_grid = estimate.grid.outline(rules.outline);
+    if (outline_grid.empty()) return std::nullopt;
+    PlanarRegion region;
+    region.plane = estimate.plane;
+    region.moments = estimate.moments;
+    region.rms = rms_to(estimate.plane, estimate.moments);
+    const Pose& world_from_axes = estimate.box.frame_from_box;  // the principal ones
+    set_outline(region, world_from_axes,
+                transformed(world_from_axes.inverse(Eigen::Isometry) * estimate.grid.world_from_grid(),
+                            outline_grid));
+    const MapPlane derived(estimate.id, region, static_cast<std::size_t>(estimate.keyframes));
+    const double least = estimate.keyframes < 2 ? rules.min_single_m2 : 0;
+    if (!(derived.area > 0) || static_cast<double>(derived.area) < std::max(least, rules.min_area_m2))
+        return std::nullopt;
+    return derived;
+}
+
+bool keeps_outline(const PlaneEstimate& estimate, const MapPlane& derived, const Plane& as_drawn) {
+    if (estimate.changed_cells >= kCellsOfNote) return false;
+    const double turn = as_drawn.normal.cross(estimate.plane.normal).norm();
+    const Eigen::Vector3d center = as_drawn.project(derived.center.cast<double>());
+    const double shift = std::abs(estimate.plane.signed_distance(center));
+    return shift + turn * static_cast<double>(derived.half_extents.norm()) < kMoveOfNote_m;
+}
+
+void move_to_estimate(MapPlane& derived, const PlaneEstimate& estimate) {
+    derived.move_to(estimate.plane);
+    derived.keyframes = static_cast<std::int16_t>(std::min(estimate.keyframes, 32767));
+    derived.inliers = static_cast<float>(estimate.moments.count);
+    derived.rms = static_cast<float>(rms_to(estimate.plane, estimate.moments));
+}
+
+}  // namespace planemap::map

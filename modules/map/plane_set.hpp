@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "map/merging.hpp"
+#include "map/plane_estimate.hpp"
+
+namespace planemap::map {
+
+/// Planes, none of which is the same plane as another by the merging rules, once merge() was called.
+class PlaneSet {
+  public:
+    PlaneSet(const MergeRules& rules, double max_extent_m);
+
+    /// The plane that a region fits best among those that satisfy the rules, or none().
+    std::size_t partner_of(const PlacedRegion& region) const;
+    static constexpr std::size_t none() { return static_cast<std::size_t>(-1); }
+
+    std::size_t push_back(PlaneEstimate estimate);
+    void clear();
+    /// After estimates()[i] changed.
+    void update(std::size_t i);
+
+    /// Merges, the best fit first, until no pair satisfies the rules; of pairs that did not before, only
+    /// those with one of `grown` can. Returns for each plane where it is now; the older id stays.
+    std::vector<std::size_t> merge(const std::vector<std::size_t>& grown);
+
+    std::vector<PlaneEstimate>& estimates() { return estimates_; }
+    const std::vector<PlaneEstimate>& estimates() const { return estimates_; }
+
+  private:
+    /// What most pairs fail on, side by side.
+    struct Bounds {
+        Eigen::Vector3d normal, low, high;
+        double d;
+    };
+    static Bounds bounds_of(const PlaneEstimate& estimate);
+    bool may_touch(const Bounds& a, const Bounds& b) const;
+    std::optional<RegionRelation> relation(const PlaneEstimate& a, const PlaneEstimate& b) const;
+
+    MergeRules rules_;
+    double cosine_;  ///< of the largest angle
+    double max_extent_m_;
+    std::vector<PlaneEstimate> estimates_;
+    std::vector<Bounds> bounds_;
+};
+
+}  // namespace planemap::map

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "map/planes.hpp"
+
+#include <algorithm>
+#include <map>
+#include <numbers>
+#include <utility>
+
+#include "map/rebuild.hpp"
+
+namespace planemap::map {
+
+namespace {
+
+MergeRules merge_rules(const MapOptions& options) {
+    constexpr double kRadPerDeg = std::numbers::pi / 180;
+    return {options.merge_angle_deg * kRadPerDeg, options.merge_distance_m, options.merge_gap_m};
+}
+
+}  // namespace
+
+Planes::Planes(const MapOptions& options)
+    : threads_(options.threads),
+      joiner_({options.noise, options.pose_sigma_m, options.agreement_m}, options.outline_cell_m),
+      free_space_(options.noise, options.see_through_m),
+      planes_(merge_rules(options), options.max_extent_m),
+      folded_(merge_rules(options), options.max_extent_m) {}
+
+void Planes::start_from(PlaneEstimate plane) {
+    ids_.reserve(plane.id);
+    folded_.push_back(std::move(plane));
+}
+
+void Planes::integrate(int keyframe_id, KeyframeStore& store, MapLosses& losses) {
+    StoredKeyframe& keyframe = store.keyframes().at(keyframe_id);
+    std::vector<std::size_t> grown;
+    for (StoredRegion& region : keyframe.regions) {
+        region.plane = -1;
+        const Observation seen(keyframe, region);
+        if (!seen.is_near()) {
+            ++losses.regions_too_far;
+            continue;
+        }
+        const std::size_t at = joiner_.join_best(planes_, ids_, seen);
+        PlaneEstimate& plane = planes_.estimates()[at];
+        plane.changed_cells += joiner_.draw(plane, seen.world_from_box(), region, keyframe);
+        plane.count_keyframe(keyframe_id, region.keyframes);
+        region.plane = plane.id;
+        grown.push_back(at);
+    }
+    std::sort(grown.begin(), grown.end());
+    grown.erase(std::unique(grown.begin(), grown.end()), grown.end());
+    for (const std::size_t i : grown) {
+        planes_.estimates()[i].refit();
+        planes_.update(i);
+    }
+    merge(grown, store);
+    free_space_.carve(planes_.estimates(), Viewpoint(keyframe));
+}
+
+/// Merges planes that have come to satisfy the rules.
+void Planes::merge(const std::vector<std::size_t>& grown, KeyframeStore& store) {
+    std::vector<int> ids;
+    for (const PlaneEstimate& plane : planes_.estimates()) ids.push_back(plane.id);
+    const std::vector<std::size_t> now = planes_.merge(grown);
+    std::map<int, int> merged_into;
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+        const int id = planes_.estimates()[now[i]].id;
+        if (id != ids[i]) merged_into[ids[i]] = id;
+    }
+    if (merged_into.empty()) return;
+    for (auto& [id, keyframe] : store.keyframes()) {
+        for (StoredRegion& region : keyframe.regions)
+            if (const auto into = merged_into.find(region.plane); into != merged_into.end())
+                region.plane = into->second;
+    }
+    folded_.rename(merged_into);
+    count_keyframes(store);
+}
+
+void Planes::fold(int keyframe_id, const StoredKeyframe& keyframe) {
+    folded_.fold(keyframe_id, keyframe, joiner_, free_space_);
+}
+
+void Planes::rebuild(KeyframeStore& store) {
+    Rebuild rebuild(store, folded_, ids_, model());
+    planes_.clear();
+    rebuild.join(planes_, joiner_);
+    rebuild.draw(planes_, joiner_, free_space_, threads_);
+    rebuild.carry_over_ids(planes_);
+    count_keyframes(store);
+}
+
+/// How many keyframes saw each plane, counted anew.
+void Planes::count_keyframes(const KeyframeStore& store) {
+    std::map<int, PlaneEstimate*> planes;
+    for (PlaneEstimate& plane : planes_.estimates()) {
+        planes[plane.id] = &plane;
+        plane.keyframes = 0;
+        plane.last_keyframe = PlaneEstimate::kNoKeyframe;
+    }
+    for (const PlaneEstimate& folded : folded_.planes()) {
+        if (const auto at = planes.find(folded.id); at != planes.end())
+            at->second->keyframes += folded.keyframes;
+    }
+    for (const auto& [id, keyframe] : store.keyframes()) {
+        std::map<int, int> saw;  // how many keyframes' views of each plane it holds
+        for (const StoredRegion& region : keyframe.regions)
+            saw[region.plane] = std::max(saw[region.plane], region.keyframes);
+        for (const auto& [plane, keyframes] : saw) {
+            if (const auto at = planes.find(plane); at != planes.end())
+                at->second->count_keyframe(id, keyframes);
+        }
+    }
+}
+
+std::size_t Planes::memory_bytes() const {
+    std::size_t bytes = 0;
+    for (const auto* group : {&planes_.estimates(), &folded_.planes()})
+        for (const PlaneEstimate& plane : *group) bytes += sizeof plane + plane.grid.memory_bytes();
+    return bytes;
+}
+
+}  // namespace planemap::map

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "map/rebuild.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <numeric>
+#include <thread>
+#include <tuple>
+#include <utility>
+
+namespace planemap::map {
+
+Rebuild::Rebuild(KeyframeStore& store, FoldedPlanes& folded, PlaneIds& ids, const ObservationModel& model)
+    : store_(store), folded_(folded), ids_(ids), first_provisional_id_(ids.upcoming()) {
+    store.place_all();
+    std::vector<double> weights;
+    for (auto& [id, keyframe] : store.keyframes()) {
+        if (!keyframe.world_from_camera) continue;
+        for (std::size_t i = 0; i < keyframe.regions.size(); ++i) {
+            StoredRegion& region = keyframe.regions[i];
+            weights.push_back(model.weight(region) * static_cast<double>(region.count));
+            entries_.push_back({id, i, &keyframe, region.plane});
+            region.plane = -1;
+        }
+    }
+    order_.resize(entries_.size());
+    std::iota(order_.begin(), order_.end(), std::size_t{0});
+    std::stable_sort(order_.begin(), order_.end(),
+                     [&](std::size_t a, std::size_t b) { return weights[a] > weights[b]; });
+}
+
+void Rebuild::join(PlaneSet& planes, RegionJoiner& joiner) {
+    folded_.unite();
+    for (const PlaneEstimate& folded : folded_.planes()) {
+        PlaneEstimate& plane = planes.estimates()[planes.push_back(folded)];
+        plane.changed = true;
+        plane.changed_cells = PlaneEstimate::kAllCells;
+    }
+    for (const std::size_t i : order_) {
+        Entry& entry = entries_[i];
+        const Observation seen(*entry.keyframe, entry.stored_region());
+        if (!seen.is_near()) continue;
+        entry.plane = joiner.join_best(planes, ids_, seen);
+        entry.world_from_box = seen.world_from_box();
+    }
+    std::vector<std::size_t> all(planes.estimates().size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    for (const std::size_t i : all) {
+        planes.estimates()[i].refit();
+        planes.update(i);
+    }
+    const std::vector<std::size_t> now = planes.merge(all);
+    for (Entry& entry : entries_)
+        if (entry.plane != PlaneSet::none()) entry.plane = now[entry.plane];
+    std::map<int, int> merged_into;
+    for (std::size_t i = 0; i < folded_.planes().size(); ++i)
+        merged_into[folded_.planes()[i].id] = planes.estimates()[now[i]].id;
+    folded_.rename(merged_into);
+    folded_.unite();
+}
+
+void Rebuild::draw(PlaneSet& planes, const RegionJoiner& joiner, const FreeSpace& free_space,
+                   int threads) const {
+    std::vector<std::vector<const Entry*>> seen(planes.estimates().size());
+    for (const std::size_t i : order_) {
+        const Entry& entry = entries_[i];
+        if (entry.plane != PlaneSet::none()) seen[entry.plane].push_back(&entry);
+    }
+    std::vector<Viewpoint> viewpoints;
+    viewpoints.reserve(store_.keyframes().size());
+    for (const auto& [id, keyframe] : store_.keyframes()) {
+        if (keyframe.world_from_camera) viewpoints.emplace_back(keyframe);
+    }
+    // Shapes are independent of each other.
+    std::atomic<std::size_t> next{0};
+    const auto work = [&] {
+        RegionJoiner own = joiner;
+        for (std::size_t i = next++; i < seen.size(); i = next++) {
+            PlaneEstimate& plane = planes.estimates()[i];
+            for (const Entry* entry : seen[i])
+                own.draw(plane, entry->world_from_box, entry->stored_region(), *entry->keyframe);
+            free_space.carve(plane, viewpoints);
+            plane.changed_cells = PlaneEstimate::kAllCells;
+        }
+    };
+    std::vector<std::jthread> others;
+    for (int i = 1; i < threads; ++i) others.emplace_back(work);
+    work();
+}
+
+void Rebuild::carry_over_ids(PlaneSet& planes) {
+    std::vector<int> now, kept;
+    for (const PlaneEstimate& plane : planes.estimates()) now.push_back(plane.id);
+    for (const PlaneEstimate& folded : folded_.planes()) kept.push_back(folded.id);
+    PlaneIds::Votes votes;
+    for (const Entry& entry : entries_) {
+        if (entry.plane == PlaneSet::none() || entry.plane_before < 0) continue;
+        votes[{entry.plane_before, now[entry.plane]}] += static_cast<double>(entry.stored_region().count);
+    }
+    const std::map<int, int> id_of = ids_.carry_over(now, kept, votes, first_provisional_id_);
+    for (PlaneEstimate& plane : planes.estimates()) plane.id = id_of.at(plane.id);
+    for (Entry& entry : entries_) {
+        if (entry.plane != PlaneSet::none()) entry.stored_region().plane = planes.estimates()[entry.plane].id;
+    }
+}
+
+}  // namespace planemap::map

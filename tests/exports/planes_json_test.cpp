@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "exports/corner.hpp"
+#include "exports/exports.hpp"
+
+namespace planemap::exports {
+namespace {
+
+using scene::corner;
+
+TEST(PlanesJson, SaysWhatTheMapSays) {
+    const PlaneMap map = corner();
+    const auto json = nlohmann::json::parse(planes_json(map, {{3, {0, 3}}}));
+    EXPECT_EQ(json["utime"], 42);
+    EXPECT_EQ(json["up"], nlohmann::json::parse("[0.0, 0.0, 1.0]"));
+    ASSERT_EQ(json["planes"].size(), 3u);
+    const auto& wall = json["planes"][1];
+    EXPECT_EQ(wall["id"], 3);
+    EXPECT_EQ(json["planes"][0]["label"], "floor");
+    EXPECT_EQ(wall["label"], "wall");
+    EXPECT_NEAR(wall["normal"][0], -1, 1e-9);
+    EXPECT_NEAR(wall["d"], 1, 1e-6);
+    EXPECT_EQ(wall["inliers"], map.planes[1].inliers);
+    EXPECT_NEAR(wall["area"], 4 - 0.35, 1e-6);
+    EXPECT_EQ(wall["box_corners"].size(), 8u);
+    EXPECT_EQ(wall["keyframe_count"], 2);
+    EXPECT_EQ(wall["keyframes"], nlohmann::json::parse("[0, 3]"));
+    ASSERT_EQ(wall["outline"].size(), 2u);
+    for (const auto& ring : wall["outline"])
+        for (const auto& p : ring) EXPECT_NEAR(p[0], 1, 1e-6) << "outlines are in the world";
+    EXPECT_EQ(json["lines"][0]["planes"], nlohmann::json::parse("[1, 3]"));
+    EXPECT_EQ(json["points"][0]["position"], nlohmann::json::parse("[1.0, 1.0, 0.0]"));
+    EXPECT_EQ(planes_json(map), planes_json(corner()));
+}
+
+TEST(PlanesJson, OfAnEmptyMapAndOfNan) {
+    const auto empty = nlohmann::json::parse(planes_json({}));
+    EXPECT_TRUE(empty["up"].is_null());
+    EXPECT_TRUE(empty["planes"].empty() && empty["lines"].empty() && empty["points"].empty());
+    PlaneMap map = corner();
+    map.planes[0].rms = std::numeric_limits<float>::quiet_NaN();
+    map.planes[0].area = std::numeric_limits<float>::infinity();
+    const auto json = nlohmann::json::parse(planes_json(map, {{3, {0, 3}}}));
+    EXPECT_TRUE(json["planes"][0]["rms"].is_null());
+    EXPECT_TRUE(json["planes"][0]["area"].is_null());
+}
+
+}  // namespace
+}  // namespace planemap::exports

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "map/derived_map.hpp"
+
+#include <gtest/gtest.h>
+
+#include "map/estimates.hpp"
+
+namespace planemap::map {
+namespace {
+
+using samples::drawn_estimate_of;
+using samples::wall_at;
+
+const std::map<int, Pose> kPoses{{0, Pose::Identity()}};
+
+DerivedMap derived_map() {
+    return {DerivationRules{}, AdjacencyRules{}};
+}
+
+TEST(DerivedMap, HasThePlanesOfTheEstimatesByAscendingId) {
+    DerivedMap derived = derived_map();
+    std::vector<PlaneEstimate> estimates{drawn_estimate_of(wall_at(0, 0, 3), 8),
+                                         drawn_estimate_of(wall_at(0, 0, 5), 2),
+                                         drawn_estimate_of(wall_at(4, 0, 5, 0.05), 4)};
+    derived.refresh(estimates, kPoses);
+    ASSERT_EQ(derived.map().planes.size(), 2u) << "one is too small";
+    EXPECT_EQ(derived.map().planes[0].id, 2);
+    EXPECT_EQ(derived.map().planes[1].id, 8);
+    for (const PlaneEstimate& estimate : estimates) EXPECT_FALSE(estimate.changed);
+    estimates.erase(estimates.begin());
+    derived.refresh(estimates, kPoses);
+    ASSERT_EQ(derived.map().planes.size(), 1u);
+    EXPECT_EQ(derived.map().planes[0].id, 2);
+}
+
+TEST(DerivedMap, WhatHardlyChangedKeepsItsOutlineAndMovesAlong) {
+    DerivedMap derived = derived_map();
+    std::vector<PlaneEstimate> estimates{drawn_estimate_of(wall_at(0, 0, 3), 0)};
+    derived.refresh(estimates, kPoses);
+    const MapPlane before = derived.map().planes[0];
+    derived.refresh(estimates, kPoses);
+    EXPECT_EQ(derived.map().planes[0].center, before.center) << "nothing changed";
+    // 0.6 mm at a time: each second step is more than a millimetre from where the plane was drawn.
+    for (int step = 1; step <= 4; ++step) {
+        estimates[0].plane.d += 0.0006;
+        estimates[0].changed = true;
+        estimates[0].changed_cells = 1;
+        derived.refresh(estimates, kPoses);
+        EXPECT_NEAR(derived.map().planes[0].plane().d, estimates[0].plane.d, 1e-5);
+        EXPECT_EQ(derived.map().planes[0].outline, before.outline);
+        EXPECT_EQ(estimates[0].changed_cells, step % 2) << "drawn anew with the second step";
+    }
+}
+
+TEST(DerivedMap, TimeDoesNotGoBack) {
+    DerivedMap derived = derived_map();
+    PlaneMap earlier;
+    earlier.utime = 5;
+    derived.start_from(earlier);
+    derived.seen_at(9);
+    derived.seen_at(7);
+    EXPECT_EQ(derived.map().utime, 9);
+    derived.set_revision(3);
+    EXPECT_EQ(derived.map().revision, 3);
+}
+
+TEST(DerivedMap, TakesTheLabelsOfAnEarlierMapById) {
+    DerivedMap derived = derived_map();
+    std::vector<PlaneEstimate> estimates{drawn_estimate_of(wall_at(0, 0, 3), 1),
+                                         drawn_estimate_of(wall_at(0, 0, 5), 2)};
+    derived.refresh(estimates, {});
+    PlaneMap earlier = derived.map();
+    earlier.planes[1].label = PlaneLabel::kWall;
+    earlier.planes.erase(earlier.planes.begin());
+    const PlaneLabel before = derived.map().planes[0].label;
+    derived.take_labels(earlier);
+    EXPECT_EQ(derived.map().planes[0].label, before);
+    EXPECT_EQ(derived.map().planes[1].label, PlaneLabel::kWall);
+}
+
+TEST(DerivedMap, OfNothing) {
+    DerivedMap derived = derived_map();
+    std::vector<PlaneEstimate> none;
+    derived.refresh(none, {});
+    EXPECT_TRUE(derived.map().planes.empty());
+    EXPECT_FALSE(derived.left_out_points());
+}
+
+}  // namespace
+}  // namespace planemap::map
