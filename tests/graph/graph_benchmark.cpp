@@ -149,7 +149,11 @@ struct Problem {
                          graph::sqrt_information(Matrix6d::Zero(), sigma_m, sigma_rad), robust});
     }
     graph::OptimisationReport optimise() {
-        return graph::optimise(poses, edges, 0, {3.0, 30}, &landmarks.landmarks(), landmarks.shared());
+        std::vector<graph::Landmark> planes = landmarks.landmarks();
+        const graph::OptimisationReport report =
+            graph::optimise(poses, edges, 0, {3.0, 30}, &planes, landmarks.shared());
+        landmarks.follow(planes, {});
+        return report;
     }
 };
 
