@@ -4,9 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <queue>
 #include <tuple>
+
+#include "core/union_find.hpp"
 
 namespace planemap {
 
@@ -247,12 +248,11 @@ std::vector<std::size_t> SurfaceSet::merge(const std::vector<std::size_t>& grown
     using Pair = std::tuple<double, std::size_t, std::size_t, int, int>;
     std::priority_queue<Pair, std::vector<Pair>, std::greater<>> pairs;
     std::vector<int> version(surfaces_.size(), 0);
-    std::vector<std::size_t> into(surfaces_.size());
-    std::iota(into.begin(), into.end(), std::size_t{0});
+    UnionFind<std::size_t> merged(surfaces_.size());
     std::vector<char> asked(surfaces_.size(), 0);
     const auto ask = [&](std::size_t i) {
         for (std::size_t j = 0; j < surfaces_.size(); ++j) {
-            if (j == i || into[j] != j || asked[j] != 0 || !may_touch(bounds_[i], bounds_[j])) continue;
+            if (j == i || !merged.stands(j) || asked[j] != 0 || !may_touch(bounds_[i], bounds_[j])) continue;
             const auto [a, b] = std::minmax(i, j);
             if (const auto r = relation(surfaces_[a], surfaces_[b]))
                 pairs.emplace(r->score(rules_), a, b, version[a], version[b]);
@@ -266,12 +266,13 @@ std::vector<std::size_t> SurfaceSet::merge(const std::vector<std::size_t>& grown
     while (!pairs.empty()) {
         const auto [score, a, b, version_a, version_b] = pairs.top();
         pairs.pop();
-        if (into[a] != a || into[b] != b || version[a] != version_a || version[b] != version_b) continue;
+        if (!merged.stands(a) || !merged.stands(b) || version[a] != version_a || version[b] != version_b)
+            continue;
         const int id = std::min(surfaces_[a].id, surfaces_[b].id);
         surfaces_[a].absorb(surfaces_[b]);
         surfaces_[a].id = id;
         update(a);
-        into[b] = a;
+        merged.join(a, b);
         ++version[a];
         ask(a);
     }
@@ -280,8 +281,8 @@ std::vector<std::size_t> SurfaceSet::merge(const std::vector<std::size_t>& grown
     std::vector<std::size_t> now(surfaces_.size());
     std::size_t kept = 0;
     for (std::size_t i = 0; i < surfaces_.size(); ++i) {
-        if (into[i] != i) {
-            now[i] = now[into[i]];  // of two, the one with the smaller index stays
+        if (!merged.stands(i)) {
+            now[i] = now[merged.find(i)];  // of two, the one with the smaller index stays
             continue;
         }
         now[i] = kept;

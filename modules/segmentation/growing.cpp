@@ -249,11 +249,11 @@ void RegionGrower::find_touching(const CellMap& map) {
 
 void RegionGrower::merge(const CellMap& map) {
     find_touching(map);
-    merge_regions(
+    MergedLabels merged = merge_regions(
         {options_.merge_m, options_.merge_sigmas, options_.merge_angle_deg * kRadians, map.cell_x, map.noise},
         regions_, touching_);
     for (std::uint16_t& label : label_of_cell_) {
-        if (label != 0) label = root(regions_, label);
+        if (label != 0) label = merged.find(label);
     }
 }
 
@@ -379,7 +379,8 @@ void RegionGrower::drop_thin(const CellMap& map) {
         return squares_[label - 1u] * kCellsPerSquare < regions_[label - 1u].cells;
     };
     find_touching(map);
-    touching_.gather(regions_);
+    MergedLabels separate(regions_.size() + 1);  // cells have the labels of what was merged
+    touching_.gather(separate);
     for (const Touch& touch : touching_.entries()) {
         const bool first = is_thin(touch.a) && regions_[touch.a - 1u].cells < regions_[touch.b - 1u].cells;
         if (!first && !is_thin(touch.b)) continue;
