@@ -221,8 +221,8 @@ void time_index(int count) {
         index.scores(descriptors);
         query.push_back(asking.ms());
     }
-    std::printf("index of %d places with 600 descriptors: %.0f MB listed\n", count,
-                4e-6 * static_cast<double>(index.entries()));
+    std::printf("index of %d places with 600 descriptors: %.0f MB\n", count,
+                1e-6 * static_cast<double>(index.memory_bytes()));
     print("  add()", add);
     print("  scores(), last 100", query);
 }
