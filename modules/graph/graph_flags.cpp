@@ -3,8 +3,9 @@
 
 namespace planemap {
 
-void add_flags(Flags& flags, GraphOptions& options, const std::string& prefix) {
-    flags.section("Graph", prefix);
+namespace {
+
+void add_search_flags(Flags& flags, GraphOptions& options) {
     flags.add("max-features", options.max_features, "of a keyframe, kept for loop closure");
     flags.add("min-separation", options.min_separation,
               "keyframes between two that a loop closure may join, along one chain");
@@ -18,6 +19,9 @@ void add_flags(Flags& flags, GraphOptions& options, const std::string& prefix) {
     flags.add("min-overlap", options.min_overlap, "share of points in view, for a candidate by place");
     flags.add("max-place-drift-m", options.max_place_drift_m,
               "with more drift between two keyframes, place says nothing");
+}
+
+void add_verification_flags(Flags& flags, GraphOptions& options) {
     flags.add("max-descriptor-distance", options.max_descriptor_distance,
               "bits in which two descriptors of one point may differ");
     flags.add("matching-ratio", options.matching_ratio, "best to second-best descriptor distance, at most");
@@ -32,6 +36,9 @@ void add_flags(Flags& flags, GraphOptions& options, const std::string& prefix) {
               "inliers, of the points that both views should see");
     flags.add("max-contradiction", options.max_contradiction,
               "share of plane samples that the other view saw through");
+}
+
+void add_redundancy_flags(Flags& flags, GraphOptions& options) {
     flags.add("max-alike", options.max_alike,
               "newer keyframes of the same place that look alike: an older one goes; 0: all stay");
     flags.add("max-place", options.max_place,
@@ -41,6 +48,9 @@ void add_flags(Flags& flags, GraphOptions& options, const std::string& prefix) {
     flags.add("place-rad", options.place_rad, "and are turned by less, radians");
     flags.add("min-alike-ratio", options.min_alike_ratio,
               "like points, of those that both should see, of views that look alike");
+}
+
+void add_drift_flags(Flags& flags, GraphOptions& options) {
     flags.add("surroundings-from-m", options.surroundings_from_m,
               "a loop closure that moves the newest keyframe by more must also fit what was seen around it");
     flags.add("drift-per-metre", options.drift_per_metre,
@@ -49,6 +59,9 @@ void add_flags(Flags& flags, GraphOptions& options, const std::string& prefix) {
     flags.add("drift-base-m", options.drift_base_m, "metres, on top");
     flags.add("drift-base-rad", options.drift_base_rad, "radians, on top");
     flags.add("max-lost-speed", options.max_lost_speed, "of the camera while odometry is lost, m/s");
+}
+
+void add_optimisation_flags(Flags& flags, GraphOptions& options) {
     flags.add("odometry-sigma-m", options.odometry_sigma_m,
               "added to each odometry edge's covariance: metres");
     flags.add("odometry-sigma-rad", options.odometry_sigma_rad, "and radians");
@@ -67,6 +80,17 @@ void add_flags(Flags& flags, GraphOptions& options, const std::string& prefix) {
               "also without a closure, each so many keyframes; 0: never");
     flags.add("revision-m", options.revision_m, "movement of a keyframe that makes a new revision");
     flags.add("revision-rad", options.revision_rad, "movement of a keyframe that makes a new revision");
+}
+
+}  // namespace
+
+void add_flags(Flags& flags, GraphOptions& options, const std::string& prefix) {
+    flags.section("Graph", prefix);
+    add_search_flags(flags, options);
+    add_verification_flags(flags, options);
+    add_redundancy_flags(flags, options);
+    add_drift_flags(flags, options);
+    add_optimisation_flags(flags, options);
 }
 
 }  // namespace planemap

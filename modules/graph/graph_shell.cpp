@@ -16,6 +16,7 @@ namespace {
 constexpr const char* kOutOfOrder = "keyframes with an id out of order";
 constexpr const char* kFeatures =
     "features without a point before the camera, or beyond the most of a keyframe";
+constexpr const char* kFailed = "optimisations in which the solver gave up";
 }  // namespace
 
 GraphShell::GraphShell(Bus& bus, const GraphOptions& options, Optimising optimising)
@@ -33,7 +34,6 @@ void GraphShell::on_keyframe(const RawMessage& message) {
         // Of two, nobody knows which is the stray: the graph goes on with the second.
         if (graph_.trajectory().keyframes.size() > 1) return;
     }
-    const std::size_t left_out = graph_.counts().features_left_out;
     try {
         const ModuleStatus::Work work(status_);
         if (optimising_ == Optimising::kInHandler)
@@ -44,7 +44,6 @@ void GraphShell::on_keyframe(const RawMessage& message) {
         throw MessageError(error.what());
     }
     remark_new_part(status_, keyframe.id, keyframe.previous_id, keyframe.utime);
-    status_.lost(kFeatures, static_cast<std::int64_t>(graph_.counts().features_left_out - left_out));
     publish();
     start_if_due();
 }
@@ -101,6 +100,14 @@ void GraphShell::finish() {
     publish();
 }
 
+/// What the graph did without since it was last told.
+void GraphShell::tell_losses() {
+    const GraphCounts now = graph_.counts();
+    status_.lost(kFeatures, static_cast<std::int64_t>(now.features_left_out - told_.features_left_out));
+    status_.lost(kFailed, static_cast<std::int64_t>(now.failed_optimisations - told_.failed_optimisations));
+    told_ = now;
+}
+
 /// For those who come late while the camera stands still: the same message again, which is no work.
 void GraphShell::republish_if_due() {
     if (published_us_ == 0 || now_us() - published_us_ < kRepeat_us) return;
@@ -109,6 +116,7 @@ void GraphShell::republish_if_due() {
 }
 
 void GraphShell::publish() {
+    tell_losses();
     const KeyframeTrajectory& trajectory = graph_.trajectory();
     bus_.publish(channels::kTrajectory, to_message(trajectory, seq_++));
     published_us_ = now_us();

@@ -35,6 +35,7 @@ class GraphShell : public Shell {
     void refuse(int id);
     void start_if_due();
     void publish();
+    void tell_losses();
     void republish_if_due();
 
     Bus& bus_;
@@ -44,6 +45,7 @@ class GraphShell : public Shell {
     std::future<void> done_;
     ModuleStatus status_{"graph"};
     StreamGuard keyframe_guard_{channels::kKeyframe, "keyframes", status_};
+    GraphCounts told_;  ///< to the status
     std::int32_t seq_ = 0;
     std::int64_t published_us_ = 0;    ///< wall clock of the last trajectory; 0: none yet
     std::optional<int> last_refused_;  ///< id of the last keyframe that was left out

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "graph/node_index.hpp"
+
 namespace planemap::graph {
 
 namespace {
@@ -25,12 +27,22 @@ double rms_distance(const std::array<Eigen::Vector3d, 4>& points, const Plane& p
 
 }  // namespace
 
+LandmarkOptions landmark_options(const GraphOptions& options) {
+    LandmarkOptions out;
+    out.min_extent_m = options.landmark_extent_m;
+    out.max_angle_deg = options.landmark_angle_deg;
+    out.max_distance_m = options.landmark_distance_m;
+    out.max_gap_m = options.landmark_gap_m;
+    out.sigma_m = options.landmark_sigma_m;
+    out.noise = options.noise;
+    return out;
+}
+
 Eigen::Vector4d sighting_error(const Sighting& sighting, const Pose& world_from_camera,
                                const Plane& plane_world) {
     Eigen::Vector4d error;
     for (int i = 0; i < 4; ++i) {
-        const Eigen::Vector3d p_world =
-            world_from_camera * sighting.points_camera[static_cast<std::size_t>(i)];
+        const Eigen::Vector3d p_world = world_from_camera * sighting.points_camera[at(i)];
         error[i] = sighting.sqrt_weight * plane_world.signed_distance(p_world);
     }
     return error;
@@ -41,13 +53,6 @@ bool Landmarks::fits(const Candidate& region, const Landmark& landmark) const {
                options_.max_angle_deg * std::numbers::pi / 180 &&
            rms_distance(region.points, landmark.plane) < options_.max_distance_m &&
            distance(region.box, landmark.box) < options_.max_gap_m;
-}
-
-int Landmarks::standing(int landmark) const {
-    while (landmarks_[static_cast<std::size_t>(landmark)].merged_into >= 0) {
-        landmark = landmarks_[static_cast<std::size_t>(landmark)].merged_into;
-    }
-    return landmark;
 }
 
 double Landmarks::add(int node, const std::vector<PlanarRegion>& regions, const Pose& world_from_camera) {
@@ -69,16 +74,17 @@ double Landmarks::add(int node, const std::vector<PlanarRegion>& regions, const 
             candidate.points[i] = world_from_camera * sighting.points_camera[i];
         int fitting = 0;
         for (std::size_t i = 0; i < landmarks_.size(); ++i) {
-            if (landmarks_[i].merged_into >= 0 || !fits(candidate, landmarks_[i])) continue;
+            if (!same_.stands(static_cast<int>(i)) || !fits(candidate, landmarks_[i])) continue;
             ++fitting;
             sighting.landmark = static_cast<int>(i);
         }
         if (fitting > 1) continue;
         if (fitting == 0) {
             sighting.landmark = static_cast<int>(landmarks_.size());
-            landmarks_.push_back({candidate.plane, candidate.box, 0, -1});
+            landmarks_.push_back({candidate.plane, candidate.box, 0});
+            same_.resize(landmarks_.size());
         }
-        Landmark& landmark = landmarks_[static_cast<std::size_t>(sighting.landmark)];
+        Landmark& landmark = landmarks_[at(sighting.landmark)];
         landmark.box = united(landmark.box, candidate.box);
         ++landmark.sightings;
         sightings_.push_back(sighting);
@@ -92,8 +98,8 @@ void Landmarks::follow(const std::vector<Landmark>& optimised, const std::vector
     std::size_t next = optimised.size();
     for (const Sighting& sighting : sightings_) {  // the first sighting of a landmark founded it
         if (next == landmarks_.size()) break;
-        if (static_cast<std::size_t>(sighting.landmark) != next) continue;
-        const Pose& move = world_moves[static_cast<std::size_t>(sighting.node)];
+        if (at(sighting.landmark) != next) continue;
+        const Pose& move = world_moves[at(sighting.node)];
         landmarks_[next].plane = move * landmarks_[next].plane;
         landmarks_[next].box = move * landmarks_[next].box;
         ++next;
@@ -101,21 +107,22 @@ void Landmarks::follow(const std::vector<Landmark>& optimised, const std::vector
 }
 
 void Landmarks::merge() {
-    for (std::size_t i = 0; i < landmarks_.size(); ++i) {
-        if (landmarks_[i].merged_into >= 0) continue;
-        for (std::size_t j = 0; j < i; ++j) {
-            Landmark &older = landmarks_[j], &newer = landmarks_[i];
-            if (older.merged_into >= 0) continue;
+    const int count = static_cast<int>(landmarks_.size());
+    for (int i = 0; i < count; ++i) {
+        if (!same_.stands(i)) continue;
+        for (int j = 0; j < i; ++j) {
+            if (!same_.stands(j)) continue;
+            Landmark &older = landmarks_[at(j)], &newer = landmarks_[at(i)];
             Candidate candidate{newer.plane, newer.box, newer.box.face()};
             for (auto& p : candidate.points) p = newer.plane.project(p);  // the plane moved, the box did not
             if (!fits(candidate, older)) continue;
             older.box = united(older.box, newer.box);
             older.sightings += newer.sightings;
-            newer.merged_into = static_cast<int>(j);
+            same_.join(j, i);
             break;
         }
     }
-    for (Sighting& sighting : sightings_) sighting.landmark = standing(sighting.landmark);
+    for (Sighting& sighting : sightings_) sighting.landmark = same_.find(sighting.landmark);
 }
 
 void Landmarks::hand_over(int gone, int keeper, const Pose& keeper_from_gone) {
@@ -138,8 +145,8 @@ void Landmarks::hand_over(int gone, int keeper, const Pose& keeper_from_gone) {
 void Landmarks::forget_unseen() {
     for (Landmark& landmark : landmarks_) landmark.sightings = 0;
     for (Sighting& sighting : sightings_) {
-        sighting.landmark = standing(sighting.landmark);
-        ++landmarks_[static_cast<std::size_t>(sighting.landmark)].sightings;
+        sighting.landmark = same_.find(sighting.landmark);
+        ++landmarks_[at(sighting.landmark)].sightings;
     }
     std::vector<int> number(landmarks_.size(), -1);
     std::vector<Landmark> kept;
@@ -149,14 +156,14 @@ void Landmarks::forget_unseen() {
         kept.push_back(landmarks_[i]);
     }
     landmarks_ = std::move(kept);
-    for (Sighting& sighting : sightings_)
-        sighting.landmark = number[static_cast<std::size_t>(sighting.landmark)];
+    same_ = UnionFind<int>(landmarks_.size());
+    for (Sighting& sighting : sightings_) sighting.landmark = number[at(sighting.landmark)];
 }
 
 std::vector<Sighting> Landmarks::shared() const {
     std::vector<Sighting> shared;
     for (const Sighting& sighting : sightings_) {
-        if (landmarks_[static_cast<std::size_t>(sighting.landmark)].sightings > 1) shared.push_back(sighting);
+        if (landmarks_[at(sighting.landmark)].sightings > 1) shared.push_back(sighting);
     }
     return shared;
 }

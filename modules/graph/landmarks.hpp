@@ -9,6 +9,8 @@
 #include "core/box.hpp"
 #include "core/camera.hpp"
 #include "core/region.hpp"
+#include "core/union_find.hpp"
+#include "graph/graph_options.hpp"
 
 namespace planemap::graph {
 
@@ -17,7 +19,6 @@ struct Landmark {
     Plane plane;
     Box box;  ///< of all that was seen of it
     int sightings = 0;
-    int merged_into = -1;  ///< another landmark that turned out to be the same plane; -1: this one stands
 };
 
 /// A keyframe saw a landmark: four points that carry the region's second moments must lie on it.
@@ -37,6 +38,9 @@ struct LandmarkOptions {
     double sigma_m = 0.01;         ///< of a point's distance, on top of the sensor's noise
     DepthNoise noise;              ///< of the depth sensor
 };
+
+/// What the graph's options say of them.
+LandmarkOptions landmark_options(const GraphOptions& options);
 
 /// The landmarks of a graph and who saw them.
 class Landmarks {
@@ -62,7 +66,7 @@ class Landmarks {
 
     /// Sightings of landmarks that at least two keyframes share.
     std::vector<Sighting> shared() const;
-    std::vector<Landmark>& landmarks() { return landmarks_; }
+    /// Of those that turned out to be the same plane, only the oldest stands for it.
     const std::vector<Landmark>& landmarks() const { return landmarks_; }
     std::size_t memory_bytes() const {
         return landmarks_.capacity() * sizeof(Landmark) + sightings_.capacity() * sizeof(Sighting);
@@ -75,11 +79,11 @@ class Landmarks {
         std::array<Eigen::Vector3d, 4> points;
     };
     bool fits(const Candidate& region, const Landmark& landmark) const;
-    int standing(int landmark) const;
     void forget_unseen();
 
     LandmarkOptions options_;
     std::vector<Landmark> landmarks_;
+    UnionFind<int> same_;  ///< landmarks that are one plane
     std::vector<Sighting> sightings_;
 };
 

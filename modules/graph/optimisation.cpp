@@ -9,6 +9,9 @@
 #include <cmath>
 #include <numbers>
 #include <unordered_set>
+#include <utility>
+
+#include "graph/node_index.hpp"
 
 namespace planemap::graph {
 
@@ -227,6 +230,77 @@ void solve_by_conjugate_gradients(ceres::Solver::Options& solver,
     solver.max_linear_solver_iterations = 100;
 }
 
+/// The graph as Ceres sees it, with all that its residuals refer to.
+class Problem {
+  public:
+    Problem(const std::vector<Pose>& poses, const std::vector<Landmark>* landmarks, double kernel_width)
+        : nodes_(poses.begin(), poses.end()),
+          has_kernel_(kernel_width > 0),
+          kernel_(has_kernel_ ? kernel_width : 1.0) {
+        if (landmarks != nullptr) planes_ = std::vector<PlaneNode>(landmarks->begin(), landmarks->end());
+    }
+
+    void add(const std::vector<PoseEdge>& edges) {
+        loops_ = std::count_if(edges.begin(), edges.end(), [](const auto& edge) { return edge.robust; });
+        for (std::ptrdiff_t loop = 0; const PoseEdge& edge : edges) {
+            Node &from = nodes_[at(edge.from)], &to = nodes_[at(edge.to)];
+            const auto residual = problem_.AddResidualBlock(new EdgeCost(edge, from, to),
+                                                            edge.robust && has_kernel_ ? &kernel_ : nullptr,
+                                                            from.change.data(), to.change.data());
+            if (!edge.robust || loop++ % (loops_ / kLoopsKept + 1) == 0) sparse_.insert(residual);
+        }
+    }
+
+    void add(const std::vector<Sighting>& sightings) {
+        for (const Sighting& sighting : sightings) {
+            PlaneNode& plane = planes_.at(at(sighting.landmark));
+            Node& node = nodes_[at(sighting.node)];
+            sparse_.insert(problem_.AddResidualBlock(new SightingCost(sighting, node, plane),
+                                                     &sighting_kernel_, node.change.data(),
+                                                     plane.change.data()));
+        }
+    }
+
+    void fix(int node) {
+        double* const anchor = nodes_[at(node)].change.data();
+        if (problem_.HasParameterBlock(anchor)) problem_.SetParameterBlockConstant(anchor);
+    }
+
+    ceres::Solver::Summary solve(const OptimisationOptions& options) {
+        StopWhenStill stop(kStillStep * std::sqrt(static_cast<double>(nodes_.size())));
+        ceres::Solver::Options solver = solver_options(options);
+        solver.callbacks.push_back(&stop);
+        if (loops_ > kLoopsSolvedDirectly) solve_by_conjugate_gradients(solver, std::move(sparse_));
+        ceres::Solver::Summary summary;
+        ceres::Solve(solver, &problem_, &summary);
+        return summary;
+    }
+
+    Pose pose(std::size_t node) {
+        nodes_[node].update();  // the last step tried may not be the one taken
+        return nodes_[node].pose();
+    }
+    Plane plane(std::size_t landmark) const { return planes_[landmark].plane(); }
+
+  private:
+    static ceres::Problem::Options shared(UpdateNodes& update) {
+        ceres::Problem::Options options;
+        options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+        options.evaluation_callback = &update;
+        return options;
+    }
+
+    std::vector<Node> nodes_;
+    std::vector<PlaneNode> planes_;
+    bool has_kernel_;
+    ceres::CauchyLoss kernel_;
+    ceres::CauchyLoss sighting_kernel_{kSightingKernel};
+    UpdateNodes update_{nodes_};
+    ceres::Problem problem_{shared(update_)};
+    std::ptrdiff_t loops_ = 0;
+    std::unordered_set<ceres::ResidualBlockId> sparse_;  ///< what is factored when there are many loops
+};
+
 }  // namespace
 
 Twist edge_error(const PoseEdge& edge, const Pose& world_from_from, const Pose& world_from_to) {
@@ -254,54 +328,22 @@ Matrix6d sqrt_information(const Matrix6d& covariance, double add_m, double add_r
 OptimisationReport optimise(std::vector<Pose>& poses, const std::vector<PoseEdge>& edges, int fixed,
                             const OptimisationOptions& options, std::vector<Landmark>* landmarks,
                             const std::vector<Sighting>& sightings) {
-    if (poses.empty() || edges.empty()) return {true, 0, 0, 0};
-    std::vector<Node> nodes(poses.begin(), poses.end());
-    std::vector<PlaneNode> planes;
-    if (landmarks != nullptr) planes = std::vector<PlaneNode>(landmarks->begin(), landmarks->end());
-
-    UpdateNodes update(nodes);
-    ceres::CauchyLoss kernel(options.kernel_width > 0 ? options.kernel_width : 1.0);
-    ceres::CauchyLoss sighting_kernel(kSightingKernel);
-    ceres::Problem::Options shared;
-    shared.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    shared.evaluation_callback = &update;
-    ceres::Problem problem(shared);
-    const auto loops =
-        std::count_if(edges.begin(), edges.end(), [](const auto& edge) { return edge.robust; });
-    std::unordered_set<ceres::ResidualBlockId> sparse;
-    for (std::ptrdiff_t loop = 0; const PoseEdge& edge : edges) {
-        Node &from = nodes[static_cast<std::size_t>(edge.from)],
-             &to = nodes[static_cast<std::size_t>(edge.to)];
-        const auto residual = problem.AddResidualBlock(
-            new EdgeCost(edge, from, to), edge.robust && options.kernel_width > 0 ? &kernel : nullptr,
-            from.change.data(), to.change.data());
-        if (!edge.robust || loop++ % (loops / kLoopsKept + 1) == 0) sparse.insert(residual);
-    }
-    for (const Sighting& sighting : sightings) {
-        PlaneNode& plane = planes.at(static_cast<std::size_t>(sighting.landmark));
-        Node& node = nodes[static_cast<std::size_t>(sighting.node)];
-        sparse.insert(problem.AddResidualBlock(new SightingCost(sighting, node, plane), &sighting_kernel,
-                                               node.change.data(), plane.change.data()));
-    }
-    double* const anchor = nodes[static_cast<std::size_t>(fixed)].change.data();
-    if (problem.HasParameterBlock(anchor)) problem.SetParameterBlockConstant(anchor);
-
-    StopWhenStill stop(kStillStep * std::sqrt(static_cast<double>(nodes.size())));
-    ceres::Solver::Options solver = solver_options(options);
-    solver.callbacks.push_back(&stop);
-    if (loops > kLoopsSolvedDirectly) solve_by_conjugate_gradients(solver, std::move(sparse));
-    ceres::Solver::Summary summary;
-    ceres::Solve(solver, &problem, &summary);
+    if (poses.empty() || edges.empty()) return {true, true, 0};
+    Problem problem(poses, landmarks, options.kernel_width);
+    problem.add(edges);
+    problem.add(sightings);
+    problem.fix(fixed);
+    const ceres::Solver::Summary summary = problem.solve(options);
     if (summary.IsSolutionUsable()) {
         for (std::size_t i = 0; i < poses.size(); ++i) {
-            nodes[i].update();  // the last step tried may not be the one taken
-            if (static_cast<int>(i) != fixed) poses[i] = nodes[i].pose();
+            if (static_cast<int>(i) != fixed) poses[i] = problem.pose(i);
         }
-        for (std::size_t i = 0; i < planes.size(); ++i) (*landmarks)[i].plane = planes[i].plane();
+        for (std::size_t i = 0; landmarks != nullptr && i < landmarks->size(); ++i)
+            (*landmarks)[i].plane = problem.plane(i);
     }
     const bool converged =
         summary.termination_type == ceres::CONVERGENCE || summary.termination_type == ceres::USER_SUCCESS;
-    return {converged, static_cast<int>(summary.iterations.size()), summary.initial_cost, summary.final_cost};
+    return {summary.IsSolutionUsable(), converged, static_cast<int>(summary.iterations.size())};
 }
 
 }  // namespace planemap::graph

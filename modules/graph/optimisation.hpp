@@ -31,9 +31,9 @@ struct OptimisationOptions {
 
 /// What an optimisation did.
 struct OptimisationReport {
+    bool usable = false;  ///< the solver found an answer; else poses and landmarks are as they were
     bool converged = false;
     int iterations = 0;
-    double initial_cost = 0, final_cost = 0;
 };
 
 /// Moves the poses (world_from_node) and the landmarks' planes to the least-squares optimum of edges and

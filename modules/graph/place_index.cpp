@@ -47,7 +47,6 @@ void PlaceIndex::list(Listing& listing, std::int32_t place) {
         entries_.push_back({});
     } else {
         first_unused_ = entries_[static_cast<std::size_t>(entry)].next;
-        --unused_;
     }
     entries_[static_cast<std::size_t>(entry)] = {place, listing.first};
     listing.first = entry;
@@ -60,7 +59,6 @@ void PlaceIndex::unlist(Listing& listing, std::int32_t& link) {
     link = e.next;
     e.next = first_unused_;
     first_unused_ = entry;
-    ++unused_;
     --listing.listed;
 }
 

@@ -27,8 +27,6 @@ class PlaceIndex {
     void remove(int place, std::span<const Descriptor> descriptors);
     /// Places there are.
     int size() const { return numbers_ - static_cast<int>(free_.size()); }
-    /// Of all lists together: what the index remembers.
-    std::size_t entries() const { return entries_.size() - unused_; }
     std::size_t memory_bytes() const;
     /// A score for each number, at least 0; it is the share of the query's weight that the place has too.
     std::vector<double> scores(std::span<const Descriptor> descriptors) const;
@@ -59,7 +57,6 @@ class PlaceIndex {
     std::array<std::vector<Listing>, kTables> places_of_;
     std::deque<Entry> entries_;
     std::int32_t first_unused_ = -1;
-    std::size_t unused_ = 0;  ///< of entries_
 };
 
 }  // namespace planemap::graph

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "graph/comparison.hpp"
+
 namespace planemap::graph {
 
 namespace {

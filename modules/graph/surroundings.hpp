@@ -4,13 +4,14 @@
 
 #include <span>
 
-#include "graph/verification.hpp"
+#include "graph/keyframe_view.hpp"
+#include "graph/verification_options.hpp"
 
 namespace planemap::graph {
 
 /// A view and where its camera stood, if a loop closure is true.
 struct PlacedView {
-    const View* view = nullptr;
+    const KeyframeView* view = nullptr;
     Pose world_from_camera = Pose::Identity();
     double drift_m = 0;  ///< bound of its error with respect to its own end of the loop closure
 };

@@ -3,16 +3,16 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "graph/node_index.hpp"
 
 namespace planemap::graph {
 
 namespace {
 
 constexpr int kMostMeasurements = 4;
-
-std::size_t at(int index) {
-    return static_cast<std::size_t>(index);
-}
 
 /// How a small motion in frame b reads in frame a: a_from_b exp(x) = exp(adjoint x) a_from_b.
 Matrix6d adjoint(const Pose& a_from_b) {
@@ -52,7 +52,50 @@ void renumber(int& node, int gone) {
     if (node > gone) --node;
 }
 
+/// Largest standard deviation of a covariance's translation and rotation; 0 where it is not usable.
+Drift worst_sigmas(const Matrix6d& covariance) {
+    if (!covariance.allFinite()) return {0, 0};
+    const auto worst = [](const Eigen::Matrix3d& block) {
+        return std::sqrt(std::max(0.0, block.diagonal().maxCoeff()));
+    };
+    return {worst(covariance.topLeftCorner<3, 3>()), worst(covariance.bottomRightCorner<3, 3>())};
+}
+
 }  // namespace
+
+Tie odometry_tie(const GraphOptions& options, int from, int to, const Pose& step, const Matrix6d& covariance,
+                 const Drift& detour) {
+    const double drift =
+        options.drift_per_metre * step.translation().norm() + options.drift_per_radian * rotation_angle(step);
+    Tie tie;
+    tie.edge = {from, to, step,
+                sqrt_information(covariance, options.odometry_sigma_m + detour.metres,
+                                 options.odometry_sigma_rad + detour.radians),
+                false};
+    tie.drift = Drift{drift, drift} + worst_sigmas(covariance) + detour;
+    tie.is_step = true;
+    return tie;
+}
+
+Tie gap_tie(const GraphOptions& options, int from, int to, const Pose& step, double seconds) {
+    const double reach = options.max_lost_speed * seconds;
+    const Matrix6d nothing_known = Matrix6d::Zero();
+    Tie gap;
+    gap.edge = {from, to, step, sqrt_information(nothing_known, 1.0 + reach, std::numbers::pi), false};
+    gap.drift = {reach, std::numbers::pi};
+    return gap;
+}
+
+Tie loop_tie(const GraphOptions& options, int from, int to, const Pose& from_from_to,
+             const Matrix6d& covariance, std::int64_t closure) {
+    Tie tie;
+    tie.edge = {from, to, from_from_to,
+                sqrt_information(covariance, options.loop_sigma_m, options.loop_sigma_rad), true};
+    tie.drift = worst_sigmas(covariance) + Drift{options.loop_sigma_m, options.loop_sigma_rad};
+    tie.closure = closure;
+    tie.is_known = tie.is_applied = false;
+    return tie;
+}
 
 PoseEdge reversed(const PoseEdge& edge) {
     PoseEdge out = edge;

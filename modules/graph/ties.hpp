@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "graph/graph_options.hpp"
 #include "graph/optimisation.hpp"
 
 namespace planemap::graph {
@@ -33,6 +34,18 @@ struct Tie {
     bool touches(int node) const { return edge.from == node || edge.to == node; }
     int other(int node) const { return edge.from == node ? edge.to : edge.from; }
 };
+
+/// Odometry's measurement: the step, with its covariance, leads from node `from` to node `to`. `detour` is
+/// how far it may be off besides, when the keyframe that odometry named has gone and another stands for it.
+Tie odometry_tie(const GraphOptions& options, int from, int to, const Pose& step, const Matrix6d& covariance,
+                 const Drift& detour = {0, 0});
+
+/// Odometry was lost for so long between two nodes: the step is a guess, which the camera's speed bounds.
+Tie gap_tie(const GraphOptions& options, int from, int to, const Pose& step, double seconds);
+
+/// A loop closure of this number that no optimisation knows yet.
+Tie loop_tie(const GraphOptions& options, int from, int to, const Pose& from_from_to,
+             const Matrix6d& covariance, std::int64_t closure);
 
 /// The same measurement read from its other end.
 PoseEdge reversed(const PoseEdge& edge);

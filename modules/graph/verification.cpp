@@ -3,7 +3,6 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <array>
 #include <bitset>
@@ -12,13 +11,14 @@
 #include <random>
 #include <utility>
 
+#include "core/rigid_fit.hpp"
+#include "graph/comparison.hpp"
+
 namespace planemap::graph {
 
 namespace {
 
-constexpr double kInlierSigmas = 3.5;
 constexpr double kPlaneAngle = 10 * std::numbers::pi / 180;  // as the map merges planes (paper section 2.3)
-constexpr double kPlaneDistance = 0.05;                      // metres, likewise
 
 /// One point seen by both.
 struct PointPair {
@@ -72,21 +72,14 @@ int count_near(const std::vector<PointPair>& pairs, const Pose& a_from_b) {
     }));
 }
 
-/// The rigid motion that maps three points onto three others (Arun et al. 1987).
+/// The rigid motion that maps three points onto three others.
 Pose align_three(const std::array<const PointPair*, 3>& sample) {
     Eigen::Matrix3d a, b;
     for (int i = 0; i < 3; ++i) {
         a.col(i) = sample[static_cast<std::size_t>(i)]->p_a;
         b.col(i) = sample[static_cast<std::size_t>(i)]->p_b;
     }
-    const Eigen::Vector3d mean_a = a.rowwise().mean(), mean_b = b.rowwise().mean();
-    const Eigen::Matrix3d correlation = (a.colwise() - mean_a) * (b.colwise() - mean_b).transpose();
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(correlation, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
-    Pose a_from_b = Pose::Identity();
-    a_from_b.linear() = svd.matrixU() * Eigen::Vector3d(1, 1, sign).asDiagonal() * svd.matrixV().transpose();
-    a_from_b.translation() = mean_a - a_from_b.linear() * mean_b;
-    return a_from_b;
+    return rigid_fit(a, b);
 }
 
 /// True when the triangle has about the same sides in both views and they are long enough to tell a rotation.
@@ -165,7 +158,7 @@ struct PlanePair {
     const PlanarRegion *a, *b;
 };
 
-std::vector<PlanePair> pair_planes(const View& a, const View& b, const Pose& a_from_b) {
+std::vector<PlanePair> pair_planes(const KeyframeView& a, const KeyframeView& b, const Pose& a_from_b) {
     std::vector<PlanePair> pairs;
     for (const PlanarRegion& region_b : b.regions) {
         const Plane plane = a_from_b * region_b.plane;
@@ -217,8 +210,8 @@ struct Refined {
     bool determined = false;
 };
 
-Refined refine(const View& a, const View& b, const std::vector<PointPair>& pairs, Pose a_from_b,
-               const VerificationOptions& options) {
+Refined refine(const KeyframeView& a, const KeyframeView& b, const std::vector<PointPair>& pairs,
+               Pose a_from_b, const VerificationOptions& options) {
     Refined refined;
     for (int i = 0; i < 10; ++i) {
         const std::vector<PlanePair> planes = pair_planes(a, b, a_from_b);
@@ -239,38 +232,8 @@ Refined refine(const View& a, const View& b, const std::vector<PointPair>& pairs
     return refined;
 }
 
-/// Pairs at the pose: each point of b with the point of a that is nearest in descriptor among those it lies
-/// on.
-std::vector<Match> match_at(const View& a, const View& b, const Pose& a_from_b,
-                            const VerificationOptions& options, double slack_m = 0) {
-    std::vector<Match> matches;
-    for (std::size_t j = 0; j < b.points.size(); ++j) {
-        const Eigen::Vector3d p = a_from_b * b.points[j];
-        if (!a.sees(p)) continue;
-        const double reach =
-            slack_m + kInlierSigmas * (options.noise.sigma(p.z()) + options.bearing_sigma * p.norm());
-        Match best;
-        int best_distance = options.matching.max_distance + 1;
-        for (std::size_t i = 0; i < a.points.size(); ++i) {
-            if ((a.points[i] - p).squaredNorm() > reach * reach) continue;
-            const int d = hamming_distance(a.descriptors[i], b.descriptors[j]);
-            if (d >= best_distance) continue;
-            best_distance = d;
-            best = {static_cast<int>(i), static_cast<int>(j)};
-        }
-        if (best.first >= 0) matches.push_back(best);
-    }
-    // A point of a takes part once.
-    std::vector<char> taken(a.points.size(), 0);
-    std::erase_if(matches, [&](const Match& match) {
-        const auto i = static_cast<std::size_t>(match.first);
-        return std::exchange(taken[i], 1) != 0;
-    });
-    return matches;
-}
-
-std::vector<PointPair> make_pairs(const View& a, const View& b, const std::vector<Match>& matches,
-                                  const VerificationOptions& options) {
+std::vector<PointPair> make_pairs(const KeyframeView& a, const KeyframeView& b,
+                                  const std::vector<Match>& matches, const VerificationOptions& options) {
     std::vector<PointPair> pairs;
     pairs.reserve(matches.size());
     for (const Match& match : matches) {
@@ -281,7 +244,7 @@ std::vector<PointPair> make_pairs(const View& a, const View& b, const std::vecto
 }
 
 /// How many cells of a 4 by 4 grid over the view's directions the points fall into.
-int occupied_cells(const View& view, const std::vector<Eigen::Vector3d>& points) {
+int occupied_cells(const KeyframeView& view, const std::vector<Eigen::Vector3d>& points) {
     std::bitset<16> cells;
     const Eigen::Vector2d span = (view.high - view.low).cwiseMax(1e-9);
     for (const Eigen::Vector3d& p : points) {
@@ -298,7 +261,7 @@ double worst_sigma(const Eigen::Matrix3d& covariance) {
     return std::sqrt(std::max(0.0, solver.eigenvalues()[2]));
 }
 
-bool spread_suffices(const View& a, const View& b, const std::vector<PointPair>& inliers,
+bool spread_suffices(const KeyframeView& a, const KeyframeView& b, const std::vector<PointPair>& inliers,
                      const Refined& refined, const VerificationOptions& options) {
     if (worst_sigma(refined.covariance.topLeftCorner<3, 3>()) > options.max_sigma_m) return false;
     if (worst_sigma(refined.covariance.bottomRightCorner<3, 3>()) > options.max_sigma_rad) return false;
@@ -311,79 +274,17 @@ bool spread_suffices(const View& a, const View& b, const std::vector<PointPair>&
 }
 
 /// Inliers, as a share of the points of one view that the other should see: the smaller of both ways.
-double visible_ratio(const View& a, const View& b, const Pose& a_from_b, int inliers) {
+double visible_ratio(const KeyframeView& a, const KeyframeView& b, const Pose& a_from_b, int inliers) {
     const double in_a = overlap(a, b, a_from_b) * static_cast<double>(b.points.size());
     const double in_b =
         overlap(b, a, a_from_b.inverse(Eigen::Isometry)) * static_cast<double>(a.points.size());
     return inliers / std::max({in_a, in_b, 1.0});
 }
 
-/// Points spread over a region, within its outline.
-std::vector<Eigen::Vector3d> samples_of(const PlanarRegion& region) {
-    constexpr int kSide = 6;
-    std::vector<Eigen::Vector3d> samples;
-    for (int i = 0; i < kSide; ++i) {
-        for (int j = 0; j < kSide; ++j) {
-            const Eigen::Vector2d at((2.0 * i + 1) / kSide - 1, (2.0 * j + 1) / kSide - 1);
-            const Eigen::Vector2d flat = at.cwiseProduct(region.box.half_extents.head<2>());
-            if (!region.outline.empty() && !contains(region.outline, flat)) continue;
-            samples.push_back(
-                region.plane.project(region.box.frame_from_box * Eigen::Vector3d(flat.x(), flat.y(), 0)));
-        }
-    }
-    return samples;
-}
-
-/// Depth at which the ray of p from the camera meets the nearest region of the view, as a multiple of p;
-/// infinity: none.
-double ray_cast(const View& view, const Eigen::Vector3d& p) {
-    double nearest = std::numeric_limits<double>::infinity();
-    for (const PlanarRegion& region : view.regions) {
-        const double slope = region.plane.normal.dot(p);
-        if (std::abs(slope) < 0.17 * p.norm()) continue;  // grazing, within 10 degrees
-        const double scale = -region.plane.d / slope;
-        if (scale <= 0 || scale >= nearest) continue;
-        if (distance(region, scale * p) < 1e-6) nearest = scale;
-    }
-    return nearest;
-}
-
-/// Where samples of b's regions lie with respect to the surfaces that a saw.
-PlaneAgreement compare_one_way(const View& a, const View& b, const Pose& a_from_b, const DepthNoise& noise,
-                               double slack_m) {
-    PlaneAgreement agreement;
-    for (const PlanarRegion& region : b.regions) {
-        for (const Eigen::Vector3d& sample : samples_of(region)) {
-            const Eigen::Vector3d p = a_from_b * sample;
-            if (!a.sees(p)) continue;
-            const double behind = (ray_cast(a, p) - 1) * p.z();
-            if (!std::isfinite(behind)) continue;
-            const double margin = kPlaneDistance + slack_m + 3 * noise.sigma(p.z() + std::max(0.0, behind));
-            if (behind > 2 * margin) ++agreement.contradict;
-            if (std::abs(behind) < margin) ++agreement.agree;
-        }
-    }
-    return agreement;
-}
-
 }  // namespace
 
-PlaneAgreement compare_planes(const View& a, const View& b, const Pose& a_from_b, const DepthNoise& noise,
-                              double slack_m) {
-    const PlaneAgreement of_b = compare_one_way(a, b, a_from_b, noise, slack_m);
-    const PlaneAgreement of_a = compare_one_way(b, a, a_from_b.inverse(Eigen::Isometry), noise, slack_m);
-    return {of_a.agree + of_b.agree, of_a.contradict + of_b.contradict};
-}
-
-PointAgreement compare_points(const View& a, const View& b, const Pose& a_from_b,
-                              const VerificationOptions& options, double slack_m) {
-    PointAgreement agreement;
-    for (const Eigen::Vector3d& p : b.points) agreement.visible += a.sees(a_from_b * p);
-    agreement.agree = static_cast<int>(match_at(a, b, a_from_b, options, slack_m).size());
-    return agreement;
-}
-
-Verification verify(const View& a, const View& b, const VerificationOptions& options, std::uint64_t seed) {
+Verification verify(const KeyframeView& a, const KeyframeView& b, const VerificationOptions& options,
+                    std::uint64_t seed) {
     Verification result;
     const std::vector<PointPair> pairs =
         make_pairs(a, b, match(a.descriptors, b.descriptors, options.matching), options);

@@ -3,24 +3,10 @@
 
 #include <cstdint>
 
-#include "core/camera.hpp"
-#include "graph/matching.hpp"
-#include "graph/view.hpp"
+#include "graph/keyframe_view.hpp"
+#include "graph/verification_options.hpp"
 
 namespace planemap::graph {
-
-struct VerificationOptions {
-    MatchingOptions matching;
-    DepthNoise noise;              ///< of the points along their rays
-    double bearing_sigma = 0.003;  ///< of the points across their rays, radians
-    int max_ransac_iterations = 300;
-    int min_inliers = 25;             ///< matched points that agree with the pose
-    double min_inlier_ratio = 0.35;   ///< of the matches
-    double min_visible_ratio = 0.12;  ///< inliers, of the points of either view that the other should see
-    int min_cells = 5;  ///< of a 4 by 4 grid over either view, how many the inliers must fall into
-    double max_sigma_m = 0.05, max_sigma_rad = 0.03;  ///< of the pose in its worst direction
-    double max_contradiction = 0.25;  ///< share of plane samples that the other view saw through
-};
 
 /// Why a loop closure was refused, or that it was not.
 enum class Verdict {
@@ -45,22 +31,7 @@ struct Verification {
 /// RANSAC, refinement over points weighted by depth noise and over pairs of planes, with robust weights; then
 /// asks whether the evidence suffices and nothing contradicts it. The same views and seed give the same
 /// answer.
-Verification verify(const View& a, const View& b, const VerificationOptions& options, std::uint64_t seed);
-
-/// Numbers of sample points of the regions of both views that agree with a surface of the other view, and
-/// that lie clearly before one (the other view saw through them), if the pose errs by at most slack_m.
-struct PlaneAgreement {
-    int agree = 0, contradict = 0;
-};
-PlaneAgreement compare_planes(const View& a, const View& b, const Pose& a_from_b, const DepthNoise& noise,
-                              double slack_m = 0);
-
-/// Of the points of b that a should see, how many lie within slack_m and noise of one of a with a like
-/// descriptor.
-struct PointAgreement {
-    int visible = 0, agree = 0;
-};
-PointAgreement compare_points(const View& a, const View& b, const Pose& a_from_b,
-                              const VerificationOptions& options, double slack_m);
+Verification verify(const KeyframeView& a, const KeyframeView& b, const VerificationOptions& options,
+                    std::uint64_t seed);
 
 }  // namespace planemap::graph

@@ -3,9 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <queue>
 #include <tuple>
+
+#include "core/union_find.hpp"
 
 namespace planemap::map {
 
@@ -73,12 +74,11 @@ std::vector<std::size_t> PlaneSet::merge(const std::vector<std::size_t>& grown) 
     using Pair = std::tuple<double, std::size_t, std::size_t, int, int>;
     std::priority_queue<Pair, std::vector<Pair>, std::greater<>> pairs;
     std::vector<int> version(estimates_.size(), 0);
-    std::vector<std::size_t> into(estimates_.size());
-    std::iota(into.begin(), into.end(), std::size_t{0});
+    UnionFind<std::size_t> merged(estimates_.size());
     std::vector<char> asked(estimates_.size(), 0);
     const auto ask = [&](std::size_t i) {
         for (std::size_t j = 0; j < estimates_.size(); ++j) {
-            if (j == i || into[j] != j || asked[j] != 0 || !may_touch(bounds_[i], bounds_[j])) continue;
+            if (j == i || !merged.stands(j) || asked[j] != 0 || !may_touch(bounds_[i], bounds_[j])) continue;
             const auto [a, b] = std::minmax(i, j);
             if (const auto r = relation(estimates_[a], estimates_[b]))
                 pairs.emplace(r->score(rules_), a, b, version[a], version[b]);
@@ -92,12 +92,12 @@ std::vector<std::size_t> PlaneSet::merge(const std::vector<std::size_t>& grown) 
     while (!pairs.empty()) {
         const auto [score, a, b, version_a, version_b] = pairs.top();
         pairs.pop();
-        if (into[a] != a || into[b] != b || version[a] != version_a || version[b] != version_b) continue;
+        if (!merged.stands(a) || !merged.stands(b) || version[a] != version_a || version[b] != version_b) continue;
         const int id = std::min(estimates_[a].id, estimates_[b].id);
         estimates_[a].absorb(estimates_[b]);
         estimates_[a].id = id;
         update(a);
-        into[b] = a;
+        merged.join(a, b);
         ++version[a];
         ask(a);
     }
@@ -106,8 +106,8 @@ std::vector<std::size_t> PlaneSet::merge(const std::vector<std::size_t>& grown) 
     std::vector<std::size_t> now(estimates_.size());
     std::size_t kept = 0;
     for (std::size_t i = 0; i < estimates_.size(); ++i) {
-        if (into[i] != i) {
-            now[i] = now[into[i]];  // of two, the one with the smaller index stays
+        if (!merged.stands(i)) {
+            now[i] = now[merged.find(i)];  // of two, the one with the smaller index stays
             continue;
         }
         now[i] = kept;

@@ -15,7 +15,9 @@ struct Pair {
     Eigen::Vector3d keyframe, camera;
 };
 
-/// The rigid motion of a triangle, or nothing when it is thin or its sides disagree between the views.
+/// The rigid motion of a triangle, or nothing when it is thin or its sides disagree between the views. It
+/// lays the triangles on each other by their own axes: a hypothesis needs no least squares (core/rigid_fit),
+/// which would take a singular value decomposition each.
 std::optional<Pose> motion_of(const std::array<Pair, 3>& t) {
     for (int i = 0; i < 3; ++i) {
         const auto &a = t[static_cast<std::size_t>(i)], &b = t[static_cast<std::size_t>((i + 1) % 3)];

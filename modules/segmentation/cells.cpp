@@ -54,6 +54,7 @@ class CellSegmenter : public Segmenter {
     PixelLabeller labeller_;
     RegionSummer summer_;
     std::vector<MergeRegion> pieces_;  // the regions once more, as merging takes them
+    MergedLabels merged_;              // of the pieces
     TouchList touching_;
     std::vector<std::uint16_t> order_, new_label_;
     ShapeTracer tracer_;
@@ -81,7 +82,7 @@ void CellSegmenter::merge_pieces(const CameraInfo& camera, std::vector<RegionSum
     // before, when cells with a part of something else in them spoilt the planes.
     pieces_.clear();
     for (const RegionSums& sums : region_sums)
-        pieces_.push_back({sums.weighted, sums.weighted.fit(), sums.points.n, sums.cells, 0});
+        pieces_.push_back({sums.weighted, sums.weighted.fit(), sums.points.n, sums.cells});
     touching_.clear();
     const int columns = grid_.columns();
     const auto meet = [&](const CellLabels& one, const CellLabels& other) {
@@ -99,12 +100,12 @@ void CellSegmenter::merge_pieces(const CameraInfo& camera, std::vector<RegionSum
         if (i % columns + 1 < columns) meet(list, labeller_.cell_labels()[i + 1]);
         if (i + columns < grid_.size()) meet(list, labeller_.cell_labels()[i + columns]);
     }
-    merge_regions({options_.merge_m, options_.merge_sigmas, options_.merge_angle_deg * kRadians,
-                   kCellPx / camera.depth.fx, camera.noise},
-                  pieces_, touching_);
+    merged_ = merge_regions({options_.merge_m, options_.merge_sigmas, options_.merge_angle_deg * kRadians,
+                             kCellPx / camera.depth.fx, camera.noise},
+                            pieces_, touching_);
     for (std::size_t r = 0; r < pieces_.size(); ++r) {
-        if (pieces_[r].merged_into == 0) continue;
-        const std::size_t into = root(pieces_, static_cast<std::uint16_t>(r + 1)) - 1u;
+        const std::size_t into = merged_.find(static_cast<std::uint16_t>(r + 1)) - 1u;
+        if (into == r) continue;
         region_sums[into].points += region_sums[r].points;
         region_sums[r] = {};
     }
@@ -133,8 +134,7 @@ void CellSegmenter::make_regions(const std::vector<RegionSums>& region_sums,
         new_label_[order_[k] + 1u] = static_cast<std::uint16_t>(k + 1);
     }
     for (std::size_t r = 0; r < pieces_.size(); ++r) {
-        if (pieces_[r].merged_into != 0)
-            new_label_[r + 1] = new_label_[root(pieces_, static_cast<std::uint16_t>(r + 1))];
+        new_label_[r + 1] = new_label_[merged_.find(static_cast<std::uint16_t>(r + 1))];
     }
     rename_labels();
 }

@@ -151,11 +151,11 @@ void RegionGrower::move(const CellMap& map, int cell, std::uint16_t label, int s
 
 void RegionGrower::merge(const CellMap& map) {
     find_touching(map, links_, result_, touching_);
-    merge_regions(
+    MergedLabels merged = merge_regions(
         {options_.merge_m, options_.merge_sigmas, options_.merge_angle_deg * kRadians, map.cell_x, map.noise},
         result_.regions, touching_);
     for (std::uint16_t& label : result_.label_of_cell) {
-        if (label != 0) label = root(result_.regions, label);
+        if (label != 0) label = merged.find(label);
     }
 }
 

@@ -40,11 +40,6 @@ double distance_of(double inverse_depth, double z, const InverseDepthPlane& plan
     return std::abs(inverse_depth) * z / plane.steepness();
 }
 
-std::uint16_t root(const std::vector<MergeRegion>& regions, std::uint16_t label) {
-    while (regions[label - 1].merged_into != 0) label = regions[label - 1].merged_into;
-    return label;
-}
-
 void TouchList::clear() {
     entries_.clear();
     recent_.fill(0);
@@ -61,10 +56,10 @@ void TouchList::add(std::uint16_t a, std::uint16_t b, bool linked, bool side_by_
     entries_[recent - 1].side_by_side += side_by_side ? 1 : 0;
 }
 
-void TouchList::gather(const std::vector<MergeRegion>& regions) {
+void TouchList::gather(MergedLabels& merged) {
     recent_.fill(0);
     for (Touch& touch : entries_) {
-        const std::uint16_t a = root(regions, touch.a), b = root(regions, touch.b);
+        const std::uint16_t a = merged.find(touch.a), b = merged.find(touch.b);
         touch.a = std::min(a, b);
         touch.b = std::max(a, b);
     }
@@ -83,8 +78,9 @@ void TouchList::gather(const std::vector<MergeRegion>& regions) {
     entries_.resize(count);
 }
 
-void merge_regions(const MergeRules& rules, std::vector<MergeRegion>& regions, TouchList& touching) {
-    touching.gather(regions);
+MergedLabels merge_regions(const MergeRules& rules, std::vector<MergeRegion>& regions, TouchList& touching) {
+    MergedLabels merged(regions.size() + 1);
+    touching.gather(merged);
     while (true) {
         const Touch* best = nullptr;
         double best_cost = 1;
@@ -92,7 +88,7 @@ void merge_regions(const MergeRules& rules, std::vector<MergeRegion>& regions, T
             if (touch.cost < 0) touch.cost = merge_cost(rules, regions, touch);
             if (touch.cost < best_cost) best_cost = touch.cost, best = &touch;
         }
-        if (best == nullptr) return;
+        if (best == nullptr) return merged;
         const std::uint16_t into_label = best->a, from_label = best->b;
         MergeRegion &into = regions[into_label - 1], &from = regions[from_label - 1];
         into.sums += from.sums;
@@ -100,13 +96,13 @@ void merge_regions(const MergeRules& rules, std::vector<MergeRegion>& regions, T
         into.cells += from.cells;
         into.fit = into.sums.fit();
         from = MergeRegion{};
-        from.merged_into = into_label;
+        merged.join(into_label, from_label);
         for (Touch& touch : touching.entries()) {
             if (touch.a == into_label || touch.b == into_label || touch.a == from_label ||
                 touch.b == from_label)
                 touch.cost = -1;
         }
-        touching.gather(regions);
+        touching.gather(merged);
     }
 }
 

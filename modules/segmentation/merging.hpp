@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/camera.hpp"
+#include "core/union_find.hpp"
 #include "segmentation/point_sums.hpp"
 
 namespace planemap::segmentation {
@@ -25,8 +26,10 @@ struct MergeRegion {
     InverseDepthFit fit;
     double pixels = 0;
     int cells = 0;
-    std::uint16_t merged_into = 0;  ///< label, 0: none
 };
+
+/// Labels of regions that are one; the least label of them is its name. Label i + 1 is regions[i], 0 is none.
+using MergedLabels = UnionFind<std::uint16_t>;
 
 /// Two regions that lie side by side somewhere.
 struct Touch {
@@ -42,7 +45,7 @@ class TouchList {
     void clear();
     void add(std::uint16_t a, std::uint16_t b, bool linked, bool side_by_side);
     /// Makes one entry of each pair, a < b, named by what the regions have become part of.
-    void gather(const std::vector<MergeRegion>& regions);
+    void gather(MergedLabels& merged);
 
     std::vector<Touch>& entries() { return entries_; }
 
@@ -54,11 +57,8 @@ class TouchList {
 /// Distance along the plane's normal, metres, that a difference of inverse depth at depth z means.
 double distance_of(double inverse_depth, double z, const InverseDepthPlane& plane);
 
-/// Merges pairs that touch, those that fit best first, as long as there are any. Label i + 1 is regions[i]. A
-/// region that became part of another is left empty.
-void merge_regions(const MergeRules& rules, std::vector<MergeRegion>& regions, TouchList& touching);
-
-/// What a region has become part of.
-std::uint16_t root(const std::vector<MergeRegion>& regions, std::uint16_t label);
+/// Merges pairs that touch, those that fit best first, as long as there are any, and returns what has become
+/// one. A region that became part of another is left empty.
+MergedLabels merge_regions(const MergeRules& rules, std::vector<MergeRegion>& regions, TouchList& touching);
 
 }  // namespace planemap::segmentation

@@ -149,7 +149,11 @@ struct Problem {
                          graph::sqrt_information(Matrix6d::Zero(), sigma_m, sigma_rad), robust});
     }
     graph::OptimisationReport optimise() {
-        return graph::optimise(poses, edges, 0, {3.0, 30}, &landmarks.landmarks(), landmarks.shared());
+        std::vector<graph::Landmark> planes = landmarks.landmarks();
+        const graph::OptimisationReport report =
+            graph::optimise(poses, edges, 0, {3.0, 30}, &planes, landmarks.shared());
+        landmarks.follow(planes, {});
+        return report;
     }
 };
 
@@ -217,8 +221,8 @@ void time_index(int count) {
         index.scores(descriptors);
         query.push_back(asking.ms());
     }
-    std::printf("index of %d places with 600 descriptors: %.0f MB listed\n", count,
-                4e-6 * static_cast<double>(index.entries()));
+    std::printf("index of %d places with 600 descriptors: %.0f MB\n", count,
+                1e-6 * static_cast<double>(index.memory_bytes()));
     print("  add()", add);
     print("  scores(), last 100", query);
 }

@@ -437,10 +437,12 @@ TEST_F(GraphTest, IdsFarFromTheLastAreRefusedAndAStrayFirstOneDoesNotStopIt) {
     EXPECT_TRUE(graph.expects(2147483647)) << "of the first nobody can tell";
     Keyframe stray = walk.keyframes[0];
     stray.id = 2147483647;
+    stray.features.emplace_back().point.setZero();
     graph.add(stray);
     EXPECT_FALSE(graph.expects(0));
     for (const Keyframe& keyframe : walk.keyframes) graph.add(keyframe);
     EXPECT_EQ(graph.trajectory().keyframes.size(), walk.keyframes.size());
+    EXPECT_EQ(graph.counts().features_left_out, 1u) << "the stray's still counts";
     const int last = walk.keyframes.back().id;
     EXPECT_TRUE(graph.expects(last + 1));
     EXPECT_TRUE(graph.expects(last + 10000));

@@ -61,7 +61,7 @@ TEST(Optimisation, ExactEdgesGiveTheTruthFromAfar) {
     std::vector<Pose> poses = disturbed(ring.truth, random, 0.5);
     const OptimisationReport report = optimise(poses, ring.edges, 0, {});
     EXPECT_TRUE(report.converged);
-    EXPECT_LT(report.final_cost, 1e-6);
+    EXPECT_TRUE(report.usable);
     EXPECT_LT(largest_error(poses, ring.truth), 1e-4);
     EXPECT_EQ(poses[0].matrix(), ring.truth[0].matrix());
 }

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+
 #include "core/random_values.hpp"
 
 namespace planemap::graph {
@@ -54,6 +57,41 @@ class TiesTest : public testing::Test {
     Random random_{3};
     std::vector<Pose> truth_;
 };
+
+TEST_F(TiesTest, WhereACovarianceIsNotUsableATieIsSoft) {
+    const GraphOptions options;
+    const Matrix6d unknown = Matrix6d::Constant(std::numeric_limits<double>::quiet_NaN());
+    const Tie odometry = odometry_tie(options, 0, 1, truth_[1], unknown);
+    const Tie loop = loop_tie(options, 0, 1, truth_[1], unknown, 3);
+    for (const Tie& tie : {odometry, loop}) {
+        EXPECT_TRUE(tie.edge.sqrt_information.allFinite());
+        EXPECT_LT(tie.edge.sqrt_information.norm(), 20);
+        EXPECT_TRUE(std::isfinite(tie.drift.size()));
+    }
+    EXPECT_TRUE(odometry.is_step && odometry.is_known && odometry.is_applied);
+    EXPECT_FALSE(odometry.edge.robust);
+    EXPECT_TRUE(loop.edge.robust);
+    EXPECT_FALSE(loop.is_step || loop.is_known || loop.is_applied);
+    EXPECT_EQ(loop.closure, 3);
+}
+
+TEST_F(TiesTest, ADetourMakesAStepSofterAndItsDriftLarger) {
+    const GraphOptions options;
+    const Matrix6d covariance = 1e-6 * Matrix6d::Identity();
+    const Tie plain = odometry_tie(options, 0, 1, truth_[1], covariance);
+    const Tie detour = odometry_tie(options, 0, 1, truth_[1], covariance, {0.1, 0.2});
+    EXPECT_LT(detour.edge.sqrt_information.norm(), plain.edge.sqrt_information.norm());
+    EXPECT_NEAR(detour.drift.metres, plain.drift.metres + 0.1, 1e-12);
+    EXPECT_NEAR(detour.drift.radians, plain.drift.radians + 0.2, 1e-12);
+}
+
+TEST_F(TiesTest, AGapIsAsWideAsTheCameraMayHaveGone) {
+    GraphOptions options;
+    options.max_lost_speed = 2;
+    EXPECT_EQ(gap_tie(options, 0, 1, truth_[1], 0).drift.metres, 0);
+    EXPECT_EQ(gap_tie(options, 0, 1, truth_[1], 10).drift.metres, 20);
+    EXPECT_LT(gap_tie(options, 0, 1, truth_[1], 10).edge.sqrt_information(0, 0), 0.06);
+}
 
 TEST_F(TiesTest, AnEdgeReadFromItsOtherEndWeighsTheSame) {
     for (int i = 0; i < 20; ++i) {

@@ -20,7 +20,7 @@ class VerificationTest : public testing::Test {
         keyframe.features = see(room_, pose, random_);
         return keyframe;
     }
-    View view_at(const Pose& pose) { return make_view(keyframe_at(pose), 1000); }
+    KeyframeView view_at(const Pose& pose) { return make_view(keyframe_at(pose), 1000); }
     /// A wall seen from the camera, facing it at z metres.
     static PlanarRegion wall(double z, double half = 1.0) {
         Pose box = Pose::Identity();
@@ -55,8 +55,8 @@ TEST_F(VerificationTest, FindsThePoseAndAHonestCovariance) {
 }
 
 TEST_F(VerificationTest, SurvivesManyWrongMatches) {
-    const View a = view_at(here_);
-    View b = view_at(there_);
+    const KeyframeView a = view_at(here_);
+    KeyframeView b = view_at(there_);
     for (std::size_t i = 0; i < b.points.size(); ++i) {
         if (random_.uniform(0, 1) < 0.4) b.points[i] = random_.vector(1) + Eigen::Vector3d(0, 0, 2.5);
     }
@@ -66,22 +66,22 @@ TEST_F(VerificationTest, SurvivesManyWrongMatches) {
 }
 
 TEST_F(VerificationTest, SameSeedSameBytes) {
-    const View a = view_at(here_), b = view_at(there_);
+    const KeyframeView a = view_at(here_), b = view_at(there_);
     const Verification one = verify(a, b, {}, 3), two = verify(a, b, {}, 3);
     EXPECT_EQ(one.a_from_b.matrix(), two.a_from_b.matrix());
     EXPECT_EQ(one.covariance, two.covariance);
 }
 
 TEST_F(VerificationTest, OtherDescriptorsAreNoLoop) {
-    const View a = view_at(here_);
-    View b = view_at(there_);
+    const KeyframeView a = view_at(here_);
+    KeyframeView b = view_at(there_);
     for (auto& descriptor : b.descriptors) descriptor = random_descriptor(random_);
     EXPECT_EQ(verify(a, b, {}, 7).verdict, Verdict::kFewMatches);
 }
 
 TEST_F(VerificationTest, SameLooksWithAnotherShapeAreNoLoop) {
-    const View a = view_at(here_);
-    View b = view_at(here_);
+    const KeyframeView a = view_at(here_);
+    KeyframeView b = view_at(here_);
     for (auto& p : b.points) p = random_.vector(1) + Eigen::Vector3d(0, 0, 2.5);
     EXPECT_EQ(verify(a, b, {}, 7).verdict, Verdict::kFewInliers);
 }
@@ -106,7 +106,7 @@ TEST_F(VerificationTest, OnePosterIsNotARoom) {
 }
 
 TEST_F(VerificationTest, ASurfaceThatTheOtherSawThroughIsAVeto) {
-    View a = view_at(here_), b = view_at(here_);
+    KeyframeView a = view_at(here_), b = view_at(here_);
     a.regions = {wall(2.7)};
     b.regions = {wall(2.7)};
     const Verification agreed = verify(a, b, {}, 7);
@@ -117,24 +117,8 @@ TEST_F(VerificationTest, ASurfaceThatTheOtherSawThroughIsAVeto) {
     EXPECT_EQ(verify(b, a, {}, 7).verdict, Verdict::kContradiction);
 }
 
-TEST_F(VerificationTest, PlaneAgreementCountsSamples) {
-    View a = view_at(here_), b = a;
-    EXPECT_EQ(compare_planes(a, b, Pose::Identity(), {}).agree, 0);
-    a.regions = {wall(2.7)};
-    b.regions = {wall(2.72)};
-    const PlaneAgreement same = compare_planes(a, b, Pose::Identity(), {});
-    EXPECT_GT(same.agree, 20);
-    EXPECT_EQ(same.contradict, 0);
-    b.regions = {wall(1.0, 0.3)};
-    const PlaneAgreement before = compare_planes(a, b, Pose::Identity(), {});
-    EXPECT_EQ(before.agree, 0);
-    EXPECT_GT(before.contradict, 20);
-    EXPECT_EQ(compare_planes(a, b, looking(Eigen::Vector3d::Zero(), M_PI), {}).contradict, 0)
-        << "out of view";
-}
-
 TEST_F(VerificationTest, PlanesSharpenTheRotation) {
-    View a = view_at(here_), b = view_at(here_);
+    KeyframeView a = view_at(here_), b = view_at(here_);
     const Matrix6d without = verify(a, b, {}, 7).covariance;
     a.regions = b.regions = {wall(2.7)};
     const Matrix6d with = verify(a, b, {}, 7).covariance;
@@ -143,17 +127,17 @@ TEST_F(VerificationTest, PlanesSharpenTheRotation) {
 }
 
 TEST_F(VerificationTest, DegenerateViews) {
-    const View a = view_at(here_);
-    EXPECT_EQ(verify(a, View{}, {}, 7).verdict, Verdict::kFewMatches);
-    EXPECT_EQ(verify(View{}, a, {}, 7).verdict, Verdict::kFewMatches);
-    EXPECT_EQ(verify(View{}, View{}, {}, 7).verdict, Verdict::kFewMatches);
-    View point = a, line = a;
+    const KeyframeView a = view_at(here_);
+    EXPECT_EQ(verify(a, KeyframeView{}, {}, 7).verdict, Verdict::kFewMatches);
+    EXPECT_EQ(verify(KeyframeView{}, a, {}, 7).verdict, Verdict::kFewMatches);
+    EXPECT_EQ(verify(KeyframeView{}, KeyframeView{}, {}, 7).verdict, Verdict::kFewMatches);
+    KeyframeView point = a, line = a;
     for (auto& p : point.points) p = {0, 0, 2};
     for (std::size_t i = 0; i < line.points.size(); ++i)
         line.points[i] = {0.01 * static_cast<double>(i), 0, 2};
     EXPECT_NE(verify(point, point, {}, 7).verdict, Verdict::kAccepted);
     EXPECT_NE(verify(line, line, {}, 7).verdict, Verdict::kAccepted) << "the turn about the line is open";
-    View huge = a;
+    KeyframeView huge = a;
     PlanarRegion region = wall(2);
     region.box.half_extents.x() = std::numeric_limits<double>::max();
     region.plane.d = std::numeric_limits<double>::max();

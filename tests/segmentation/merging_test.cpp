@@ -47,7 +47,7 @@ TouchList chain(int regions, int linked) {
 
 int count_of(const std::vector<MergeRegion>& regions) {
     int count = 0;
-    for (const MergeRegion& r : regions) count += r.merged_into == 0 ? 1 : 0;
+    for (const MergeRegion& r : regions) count += r.cells > 0 ? 1 : 0;
     return count;
 }
 
@@ -58,10 +58,9 @@ TEST(MergingTest, HalvesOfAPlaneBecomeOne) {
         const MergeRegion left = region(kWall, -0.14, 0, 10, 8), right = region(kWall, 0, 0, 10, 8);
         std::vector<MergeRegion> regions{left, right};
         TouchList touching = chain(2, linked);
-        merge_regions(rules(), regions, touching);
-        EXPECT_EQ(regions[0].merged_into, 0);
-        EXPECT_EQ(regions[1].merged_into, 1);
-        EXPECT_EQ(root(regions, 2), 1);
+        MergedLabels merged = merge_regions(rules(), regions, touching);
+        EXPECT_EQ(merged.find(1), 1);
+        EXPECT_EQ(merged.find(2), 1);
         EXPECT_EQ(regions[0].cells, 160);
         EXPECT_EQ(regions[0].pixels, left.pixels + right.pixels);
         EXPECT_EQ(regions[0].sums.n, regions[0].pixels);
@@ -140,9 +139,9 @@ TEST(MergingTest, ChainsMergeIntoOne) {
     std::vector<MergeRegion> regions;
     for (int r = 0; r < kParts; ++r) regions.push_back(region(kWall, -0.3 + 4 * kCell * r, 0, 4, 6));
     TouchList touching = chain(kParts, 10);
-    merge_regions(rules(), regions, touching);
+    MergedLabels merged = merge_regions(rules(), regions, touching);
     ASSERT_EQ(count_of(regions), 1);
-    for (int r = 1; r <= kParts; ++r) EXPECT_EQ(root(regions, static_cast<std::uint16_t>(r)), 1);
+    for (int r = 1; r <= kParts; ++r) EXPECT_EQ(merged.find(static_cast<std::uint16_t>(r)), 1);
     EXPECT_EQ(regions[0].cells, kParts * 24);
     EXPECT_EQ(regions[0].pixels, kParts * 24 * 16);
 }
@@ -152,10 +151,10 @@ TEST(MergingTest, ChainsStopAtAStep) {
     for (int r = 0; r < 6; ++r)
         regions.push_back(region({0, 0, 1 / (r < 3 ? 1.5 : 1.53)}, -0.2 + 4 * kCell * r, 0, 4, 20));
     TouchList touching = chain(6, 0);
-    merge_regions(rules(), regions, touching);
+    MergedLabels merged = merge_regions(rules(), regions, touching);
     EXPECT_EQ(count_of(regions), 2);
-    EXPECT_EQ(root(regions, 3), 1);
-    EXPECT_EQ(root(regions, 6), 4);
+    EXPECT_EQ(merged.find(3), 1);
+    EXPECT_EQ(merged.find(6), 4);
 }
 
 TEST(MergingTest, DistanceIsAlongTheNormal) {
@@ -166,8 +165,10 @@ TEST(MergingTest, DistanceIsAlongTheNormal) {
     EXPECT_NEAR(distance_of(1 / 2.0 - 1 / 2.03, 2.03, grazing), 0.03 * 0.5 / grazing.steepness(), 1e-12);
 }
 
-std::vector<MergeRegion> separate(int count) {
-    return std::vector<MergeRegion>(static_cast<std::size_t>(count));
+/// Gathers with all labels up to `count` on their own.
+void gather_separate(TouchList& touching, std::size_t count) {
+    MergedLabels separate(count + 1);
+    touching.gather(separate);
 }
 
 TEST(TouchListTest, CountsWhateverTheOrder) {
@@ -177,7 +178,7 @@ TEST(TouchListTest, CountsWhateverTheOrder) {
     touching.add(2, 1, false, true);
     touching.add(2, 1, false, false);
     touching.add(3, 2, false, true);
-    touching.gather(separate(3));
+    gather_separate(touching, 3);
     ASSERT_EQ(touching.entries().size(), 2u);
     const Touch first = touching.entries()[0], second = touching.entries()[1];
     EXPECT_THAT((std::array{int{first.a}, int{first.b}, first.linked, first.side_by_side}),
@@ -194,7 +195,7 @@ TEST(TouchListTest, PairsOfOneHashAreKeptApartAndGathered) {
         touching.add(1, 256, true, true);
         touching.add(2, 243, false, true);
     }
-    touching.gather(separate(256));
+    gather_separate(touching, 256);
     ASSERT_EQ(touching.entries().size(), 2u);
     EXPECT_EQ(touching.entries()[0].b, 256);
     EXPECT_EQ(touching.entries()[0].linked, 5);
@@ -203,16 +204,16 @@ TEST(TouchListTest, PairsOfOneHashAreKeptApartAndGathered) {
 }
 
 TEST(TouchListTest, GatherFollowsWhatWasMerged) {
-    std::vector<MergeRegion> regions = separate(4);
+    MergedLabels merged(5);
     TouchList touching;
     touching.clear();
     touching.add(1, 2, true, true);
     touching.add(2, 3, true, true);
     touching.add(1, 3, false, true);
     touching.add(3, 4, true, true);
-    regions[2].merged_into = 2;
-    regions[1].merged_into = 1;
-    touching.gather(regions);  // all but 4 are 1
+    merged.join(3, 2);
+    merged.join(2, 1);
+    touching.gather(merged);  // all but 4 are 1
     ASSERT_EQ(touching.entries().size(), 1u);
     EXPECT_EQ(touching.entries()[0].a, 1);
     EXPECT_EQ(touching.entries()[0].b, 4);
@@ -226,7 +227,7 @@ TEST(TouchListTest, ClearForgetsAll) {
     touching.clear();
     EXPECT_TRUE(touching.entries().empty());
     touching.add(1, 2, true, true);
-    touching.gather(separate(2));
+    gather_separate(touching, 2);
     ASSERT_EQ(touching.entries().size(), 1u);
     EXPECT_EQ(touching.entries()[0].linked, 1);
 }

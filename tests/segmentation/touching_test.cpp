@@ -21,7 +21,8 @@ CellLinks links_of(const OwnedMap& owned) {
 std::vector<Touch> touching(const OwnedMap& owned, const CellRegions& cell_regions) {
     TouchList list;
     find_touching(owned.map(), links_of(owned), cell_regions, list);
-    list.gather(cell_regions.regions);
+    MergedLabels separate(cell_regions.regions.size() + 1);
+    list.gather(separate);
     return list.entries();
 }
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "evaluate/evaluation.hpp"
 
-#include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -13,6 +11,7 @@
 #include <string>
 #include <tuple>
 
+#include "core/rigid_fit.hpp"
 #include "core/validation.hpp"
 
 namespace planemap {
@@ -177,20 +176,12 @@ std::optional<AbsoluteError> absolute_error(const Trajectory& truth, const Traje
     if (pairs.size() < 3) return std::nullopt;
     const Eigen::Matrix3Xd data = matched_positions(truth, pairs, true);
     const Eigen::Matrix3Xd model = scale * matched_positions(estimate, pairs, false);
-    const Eigen::Vector3d data_mean = data.rowwise().mean();
-    const Eigen::Vector3d model_mean = model.rowwise().mean();
-    const Eigen::Matrix3Xd data_centred = data.colwise() - data_mean;
-    const Eigen::Matrix3Xd model_centred = model.colwise() - model_mean;
-
-    const Eigen::Matrix3d correlation = data_centred * model_centred.transpose();
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(correlation, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    Eigen::Vector3d signs = Eigen::Vector3d::Ones();
-    if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0) signs.z() = -1;
 
     AbsoluteError result;
-    result.truth_from_estimate.linear() = svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
-    result.truth_from_estimate.translation() = data_mean - result.truth_from_estimate.linear() * model_mean;
+    result.truth_from_estimate = rigid_fit(data, model);
 
+    const Eigen::Matrix3Xd data_centred = data.colwise() - data.rowwise().mean();
+    const Eigen::Matrix3Xd model_centred = model.colwise() - model.rowwise().mean();
     const Eigen::Matrix3Xd aligned = result.truth_from_estimate.linear() * model_centred;
     const Eigen::VectorXd errors = (aligned - data_centred).colwise().norm().transpose();
     result.metres = statistics({errors.begin(), errors.end()});

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "graph/view.hpp"
+#include "graph/keyframe_view.hpp"
 
 namespace planemap::graph {
 
-View make_view(const Keyframe& keyframe, int max_features) {
+KeyframeView make_view(const Keyframe& keyframe, int max_features) {
     std::vector<const Feature*> sound;
     for (const Feature& feature : keyframe.features) {
         if (feature.point.z() > 0.01f && feature.point.norm() < 1000.0f) sound.push_back(&feature);
     }
-    View view;
+    KeyframeView view;
     const std::size_t kept = std::min(sound.size(), static_cast<std::size_t>(max_features));
     view.points.reserve(kept);
     view.descriptors.reserve(kept);
@@ -25,14 +25,14 @@ View make_view(const Keyframe& keyframe, int max_features) {
     return view;
 }
 
-double overlap(const View& a, const View& b, const Pose& a_from_b) {
+double overlap(const KeyframeView& a, const KeyframeView& b, const Pose& a_from_b) {
     if (b.points.empty()) return 0;
     int seen = 0;
     for (const Eigen::Vector3d& p_b : b.points) seen += a.sees(a_from_b * p_b);
     return seen / static_cast<double>(b.points.size());
 }
 
-double mean_depth(const View& view) {
+double mean_depth(const KeyframeView& view) {
     double sum = 0, count = 0;
     for (const Eigen::Vector3d& p : view.points) sum += p.z();
     if (!view.points.empty()) return sum / static_cast<double>(view.points.size());
@@ -43,7 +43,7 @@ double mean_depth(const View& view) {
     return count > 0 ? sum / count : 0;
 }
 
-std::size_t memory_bytes(const View& view) {
+std::size_t memory_bytes(const KeyframeView& view) {
     std::size_t bytes = view.points.capacity() * sizeof(Eigen::Vector3d) +
                         view.descriptors.capacity() * sizeof(Descriptor) +
                         view.regions.capacity() * sizeof(PlanarRegion);

@@ -9,7 +9,7 @@
 namespace planemap::graph {
 
 /// What loop closure keeps of a keyframe. All in its camera frame.
-struct View {
+struct KeyframeView {
     std::vector<Eigen::Vector3d> points;  ///< metres, z > 0
     std::vector<Descriptor> descriptors;  ///< one a point
     std::vector<PlanarRegion> regions;
@@ -24,15 +24,15 @@ struct View {
 
 /// Features without a point before the camera are left out; of more than max_features, evenly spread ones
 /// stay.
-View make_view(const Keyframe& keyframe, int max_features);
+KeyframeView make_view(const Keyframe& keyframe, int max_features);
 
 /// Share of the points of b that a would see if b's camera stood at a_from_b; 0 without points.
-double overlap(const View& a, const View& b, const Pose& a_from_b);
+double overlap(const KeyframeView& a, const KeyframeView& b, const Pose& a_from_b);
 
 /// Depth of what it shows on average: of its points or, without them, of its regions; 0 for an empty view.
-double mean_depth(const View& view);
+double mean_depth(const KeyframeView& view);
 
 /// Bytes it takes, by capacity.
-std::size_t memory_bytes(const View& view);
+std::size_t memory_bytes(const KeyframeView& view);
 
 }  // namespace planemap::graph

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "graph/view.hpp"
+#include "graph/keyframe_view.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,13 +10,13 @@ namespace {
 
 using namespace planemap::test;
 
-View view_at(const std::vector<Landmark>& room, const Pose& pose, Random& random) {
+KeyframeView view_at(const std::vector<Landmark>& room, const Pose& pose, Random& random) {
     Keyframe keyframe;
     keyframe.features = see(room, pose, random);
     return make_view(keyframe, 1000);
 }
 
-TEST(View, KeepsSoundFeaturesOnlyAndAtMostSoMany) {
+TEST(KeyframeView, KeepsSoundFeaturesOnlyAndAtMostSoMany) {
     Keyframe keyframe;
     for (int i = 0; i < 100; ++i) {
         Feature feature;
@@ -24,7 +24,7 @@ TEST(View, KeepsSoundFeaturesOnlyAndAtMostSoMany) {
         keyframe.features.push_back(feature);
     }
     EXPECT_EQ(make_view(keyframe, 1000).points.size(), 50u);
-    const View few = make_view(keyframe, 7);
+    const KeyframeView few = make_view(keyframe, 7);
     EXPECT_EQ(few.points.size(), 7u);
     EXPECT_EQ(few.descriptors.size(), 7u);
     EXPECT_GT(few.points.back().x(), 0.7) << "spread over all";
@@ -32,8 +32,8 @@ TEST(View, KeepsSoundFeaturesOnlyAndAtMostSoMany) {
     EXPECT_TRUE(make_view(Keyframe{}, 10).points.empty());
 }
 
-TEST(View, MeanDepthIsOfThePointsOrElseOfTheRegions) {
-    View view;
+TEST(KeyframeView, MeanDepthIsOfThePointsOrElseOfTheRegions) {
+    KeyframeView view;
     EXPECT_EQ(mean_depth(view), 0);
     Pose wall = Pose::Identity();
     wall.linear() = so3_exp({M_PI, 0, 0});
@@ -44,20 +44,20 @@ TEST(View, MeanDepthIsOfThePointsOrElseOfTheRegions) {
     EXPECT_NEAR(mean_depth(view), 3.5, 1e-9);
 }
 
-TEST(View, OverlapIsWholeForTheSamePoseAndNoneForTheOppositeOne) {
+TEST(KeyframeView, OverlapIsWholeForTheSamePoseAndNoneForTheOppositeOne) {
     Random random(1);
     const auto room = make_room(random, Eigen::Vector3d::Zero(), 3, 2000);
     const Pose here = looking(Eigen::Vector3d::Zero(), 0), back = looking(Eigen::Vector3d::Zero(), M_PI);
     const Pose aside = looking(Eigen::Vector3d::Zero(), 0.4);
-    const View a = view_at(room, here, random), b = view_at(room, back, random),
-               c = view_at(room, aside, random);
+    const KeyframeView a = view_at(room, here, random), b = view_at(room, back, random),
+                       c = view_at(room, aside, random);
     EXPECT_DOUBLE_EQ(overlap(a, a, Pose::Identity()), 1.0);
     EXPECT_DOUBLE_EQ(overlap(a, b, here.inverse() * back), 0.0);
     const double partly = overlap(a, c, here.inverse() * aside);
     EXPECT_GT(partly, 0.4);
     EXPECT_LT(partly, 0.8);
-    EXPECT_DOUBLE_EQ(overlap(a, View{}, Pose::Identity()), 0.0);
-    EXPECT_DOUBLE_EQ(overlap(View{}, a, Pose::Identity()), 0.0);
+    EXPECT_DOUBLE_EQ(overlap(a, KeyframeView{}, Pose::Identity()), 0.0);
+    EXPECT_DOUBLE_EQ(overlap(KeyframeView{}, a, Pose::Identity()), 0.0);
 }
 
 }  // namespace

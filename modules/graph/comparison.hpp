@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Whether two views show the same when one camera stands at a given pose in the frame of the other.
+#pragma once
+
+#include <vector>
+
+#include "graph/keyframe_view.hpp"
+#include "graph/verification_options.hpp"
+
+namespace planemap::graph {
+
+constexpr double kInlierSigmas = 3.5;    ///< of two points' distance, when they are one
+constexpr double kPlaneDistance = 0.05;  ///< metres between planes that are one, as the map merges them
+                                         ///< (paper section 2.3)
+
+/// Numbers of sample points of the regions of both views that agree with a surface of the other view, and
+/// that lie clearly before one (the other view saw through them), if the pose errs by at most slack_m.
+struct PlaneAgreement {
+    int agree = 0, contradict = 0;
+};
+PlaneAgreement compare_planes(const KeyframeView& a, const KeyframeView& b, const Pose& a_from_b,
+                              const DepthNoise& noise, double slack_m = 0);
+
+/// Of the points of b that a should see, how many lie within slack_m and noise of one of a with a like
+/// descriptor.
+struct PointAgreement {
+    int visible = 0, agree = 0;
+};
+PointAgreement compare_points(const KeyframeView& a, const KeyframeView& b, const Pose& a_from_b,
+                              const VerificationOptions& options, double slack_m);
+
+/// Points of a with points of b: each point of b with the one of a that is nearest in descriptor among those
+/// that it lies on within slack_m and noise. A point takes part once.
+std::vector<Match> match_at(const KeyframeView& a, const KeyframeView& b, const Pose& a_from_b,
+                            const VerificationOptions& options, double slack_m = 0);
+
+}  // namespace planemap::graph

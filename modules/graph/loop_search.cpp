@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "graph/loop_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "graph/surroundings.hpp"
+
+namespace planemap::graph {
+
+namespace {
+
+/// The nodes of the highest scores of at least `least`, none beside another.
+std::vector<int> peaks(const std::vector<double>& scores, double least, int count) {
+    std::vector<int> order;
+    for (int i = 0; i < static_cast<int>(scores.size()); ++i) {
+        if (scores[at(i)] >= least && scores[at(i)] > 0) order.push_back(i);
+    }
+    std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return scores[at(a)] > scores[at(b)]; });
+    std::vector<int> chosen;
+    for (const int node : order) {
+        if (static_cast<int>(chosen.size()) >= count) break;
+        const bool beside =
+            std::any_of(chosen.begin(), chosen.end(), [&](int other) { return std::abs(other - node) <= 2; });
+        if (!beside) chosen.push_back(node);
+    }
+    return chosen;
+}
+
+/// How far a loop closure moves the newest: metres plus radians.
+double jump(const Pose& expected, const Pose& node_from_newest) {
+    return (expected.translation() - node_from_newest.translation()).norm() +
+           rotation_angle(expected.inverse(Eigen::Isometry) * node_from_newest);
+}
+
+}  // namespace
+
+void LoopSearch::remove(int node, const KeyframeView& view) {
+    index_.remove(place_of_[at(node)], view.descriptors);
+    place_of_.erase(place_of_.begin() + node);
+}
+
+std::vector<int> LoopSearch::candidates(const Keyframes& keyframes, const Topology& topology,
+                                        const std::vector<Drift>& drifts) const {
+    const std::vector<bool> near = topology.within_steps(keyframes.newest(), options_.min_separation);
+    std::vector<int> found = peaks(appearance_scores(keyframes.back().view, near), options_.min_appearance,
+                                   options_.appearance_candidates);
+    for (const int node :
+         peaks(place_scores(keyframes, near, drifts), options_.min_overlap, options_.place_candidates)) {
+        if (std::find(found.begin(), found.end(), node) == found.end()) found.push_back(node);
+    }
+    return found;
+}
+
+std::vector<double> LoopSearch::appearance_scores(const KeyframeView& view,
+                                                  const std::vector<bool>& near) const {
+    const std::vector<double> by_place = index_.scores(view.descriptors);
+    std::vector<double> scores(place_of_.size(), 0.0);
+    for (std::size_t i = 0; i < scores.size(); ++i) {
+        if (!near[i]) scores[i] = by_place[at(place_of_[i])];
+    }
+    return scores;
+}
+
+/// Share of the newest view that each node should see too; 0 where drift leaves that open.
+std::vector<double> LoopSearch::place_scores(const Keyframes& keyframes, const std::vector<bool>& near,
+                                             const std::vector<Drift>& drifts) const {
+    constexpr double kFarthest = 4.0;  // metres between two cameras that see the same from alike
+    const int newest = keyframes.newest();
+    std::vector<double> scores(place_of_.size(), 0.0);
+    for (int i = 0; i <= newest; ++i) {
+        if (near[at(i)] || drifts[at(i)].metres > options_.max_place_drift_m) continue;
+        if ((keyframes.pose(i).translation() - keyframes.pose(newest).translation()).norm() > kFarthest)
+            continue;
+        const Pose node_from_newest = keyframes.between(i, newest);
+        if (node_from_newest.linear()(2, 2) < 0.5) continue;  // optical axes more than 60 degrees apart
+        scores[at(i)] = std::min(
+            overlap(keyframes[i].view, keyframes.back().view, node_from_newest),
+            overlap(keyframes.back().view, keyframes[i].view, node_from_newest.inverse(Eigen::Isometry)));
+    }
+    return scores;
+}
+
+std::optional<Verification> LoopSearch::verified(int node, const Keyframes& keyframes,
+                                                 const Topology& topology,
+                                                 const std::vector<Drift>& drifts) const {
+    const auto seed = static_cast<std::uint64_t>(node) << 32 | static_cast<std::uint64_t>(keyframes.newest());
+    const Verification found =
+        verify(keyframes[node].view, keyframes.back().view, verification_options(options_), seed);
+    if (found.verdict != Verdict::kAccepted) return std::nullopt;
+    const Pose expected = keyframes.between(node, keyframes.newest());
+    if (!fits_odometry(expected, drifts[at(node)], found.a_from_b)) return std::nullopt;
+    if (!fits_surroundings(node, keyframes, topology, drifts, found.a_from_b)) return std::nullopt;
+    return found;
+}
+
+bool LoopSearch::fits_odometry(const Pose& expected, const Drift& drift, const Pose& node_from_newest) const {
+    return (expected.translation() - node_from_newest.translation()).norm() <=
+               options_.drift_base_m + drift.metres &&
+           rotation_angle(expected.inverse(Eigen::Isometry) * node_from_newest) <=
+               options_.drift_base_rad + drift.radians;
+}
+
+/// Whether what was seen about the node can be what was seen about the newest one, if these two are where the
+/// closure says. Asked only of a closure that moves the newest so far that a false one would matter; the
+/// farther it moves, the wider drift lets us look around.
+bool LoopSearch::fits_surroundings(int node, const Keyframes& keyframes, const Topology& topology,
+                                   const std::vector<Drift>& drifts, const Pose& node_from_newest) const {
+    const int newest = keyframes.newest();
+    const double moves_by = jump(keyframes.between(node, newest), node_from_newest);
+    if (moves_by < options_.surroundings_from_m) return true;
+    const double reach = std::min(1.0, moves_by / 3);
+    const std::vector<Drift> of_node = topology.drifts_from(node);
+    const Pose move =
+        keyframes.pose(node) * node_from_newest * keyframes.pose(newest).inverse(Eigen::Isometry);
+    // Where odometry may have gone astray all the way in between, a node belongs to the nearer end only.
+    const bool apart = 2 * drifts[at(node)].metres > moves_by;
+    std::vector<PlacedView> older, newer;
+    for (int i = 0; i < newest; ++i) {
+        if (i == node) continue;
+        const double to_newest = drifts[at(i)].metres, to_node = of_node[at(i)].metres;
+        if (to_newest < reach && (!apart || to_newest < to_node))
+            newer.push_back({&keyframes[i].view, move * keyframes.pose(i), to_newest});
+        if (to_node < reach && (!apart || to_newest >= to_node))
+            older.push_back({&keyframes[i].view, keyframes.pose(i), to_node});
+    }
+    return compare_surroundings(older, newer, verification_options(options_)).fit();
+}
+
+}  // namespace planemap::graph

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "core/trajectory.hpp"
+#include "graph/graph_options.hpp"
+#include "graph/keyframes.hpp"
+
+namespace planemap::graph {
+
+/// The graph as others see it: where its keyframes stand, and a revision that counts how often some of them
+/// moved by more than revision_m or revision_rad. Moves too small for that add up until they are not.
+class PublishedTrajectory {
+  public:
+    /// The options must be valid.
+    explicit PublishedTrajectory(const GraphOptions& options) : options_(options) {}
+
+    const KeyframeTrajectory& get() const { return trajectory_; }
+
+    /// Brings it up to date with keyframes that moved, or of which one was added since. Precondition: at
+    /// least one.
+    void update(const Keyframes& keyframes, int loop_closures);
+    /// A keyframe goes.
+    void remove(int node);
+
+  private:
+    bool has_moved(const std::vector<Pose>& poses) const;
+
+    GraphOptions options_;
+    KeyframeTrajectory trajectory_;
+    std::vector<Pose> revision_poses_;  ///< of the keyframes when they last made a revision
+};
+
+}  // namespace planemap::graph
