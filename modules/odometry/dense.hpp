@@ -21,8 +21,6 @@ struct DenseLevel {
 /// A frame that later ones are aligned to, coarsest level first.
 struct DenseReference {
     std::vector<DenseLevel> levels;
-
-    bool empty() const { return levels.empty(); }
 };
 
 /// Levels 4 and 3 (or as coarse as the pyramid goes).

@@ -61,7 +61,6 @@ std::optional<TrackPoint> make_point(const OdometryOptions& options, const Prepa
 LocalKeyframe make_local_keyframe(const OdometryOptions& options, const PreparedFrame& frame,
                                   const FrameMotion& motion) {
     LocalKeyframe keyframe;
-    keyframe.utime = frame.utime;
     keyframe.regions = frame.regions;
     keyframe.patches = PlanarPatches(*frame.depth, frame.camera->color, *frame.camera,
                                      options.surface_cell_px, frame.readout_s * motion.velocity);

@@ -2,7 +2,6 @@
 // The recent keyframes that frames are tracked against.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "core/pose.hpp"
@@ -24,7 +23,6 @@ struct TrackPoint {
 /// A keyframe that frames are tracked against.
 struct LocalKeyframe {
     int id = -1;
-    std::int64_t utime = 0;
     Pose odom_from_keyframe = Pose::Identity();
     std::vector<TrackPoint> points;
     FlowPyramid pyramid;  ///< with derivatives

@@ -29,6 +29,8 @@ std::vector<DepthSample> without_shutter(std::vector<DepthSample> samples, const
 
 /// The surface seen in a depth image: one plane for each square cell whose readings lie on one.
 /// A plane is linear in inverse depth, 1/z = a u + b v + c, so a cell is a 3x3 least-squares fit.
+/// Segmentation fits cells, too, but for another end, all pixels weighted by z^2 in single precision, eight
+/// cells at a time; here every fourth pixel counts alike, in double precision.
 class PlanarPatches {
   public:
     PlanarPatches() = default;

@@ -65,7 +65,8 @@ TEST(DenseTest, NothingToSeeSaysNothing) {
     }
     const SeenFrame plain(Pose::Identity(), 0, false);
     for (const DenseLevel& level : reference_of(plain.frame).levels) EXPECT_TRUE(level.points.empty());
-    EXPECT_TRUE(make_dense_reference({}, *seen.frame.depth, *seen.frame.camera).empty()) << "no colour";
+    EXPECT_TRUE(make_dense_reference({}, *seen.frame.depth, *seen.frame.camera).levels.empty())
+        << "no colour";
 }
 
 TEST(DenseTest, WhatLiesBehindTheCameraSaysNothing) {
