@@ -7,67 +7,73 @@
 
 #include "core/camera.hpp"
 #include "core/keyframe.hpp"
+#include "core/option_list.hpp"
 
 namespace planemap {
 
-/// Options of PoseGraph.
+/// Options of PoseGraph; options_of() says what each is.
 struct GraphOptions {
-    int max_features = 600;  ///< of a keyframe, kept for loop closure
+    int max_features = 600;
 
-    int min_separation = 8;          ///< keyframes between two that a loop closure may join, along one chain
-    int appearance_candidates = 3;   ///< keyframes tried for a new one because they look alike
-    int place_candidates = 3;        ///< keyframes tried because they should see the same place
-    int max_closures = 2;            ///< accepted for one keyframe
-    double min_appearance = 0.02;    ///< share of the new keyframe's rare features that a candidate has too
-    double min_overlap = 0.3;        ///< share of points in view, for a candidate by place
-    double max_place_drift_m = 1.0;  ///< with more drift between two keyframes, place says nothing
+    int min_separation = 8;
+    int appearance_candidates = 3;
+    int place_candidates = 3;
+    int max_closures = 2;
+    double max_place_drift_m = 1.0;
+    double matching_ratio = 0.85;
+    DepthNoise noise;  ///< of the features' points along their rays
+    int min_inliers = 25;
+    double min_inlier_ratio = 0.35;
+    double surroundings_from_m = 0.3;
 
-    int max_descriptor_distance = 64;  ///< bits in which two descriptors of one point may differ
-    double matching_ratio = 0.85;      ///< best to second-best descriptor distance, at most
-    DepthNoise noise;                  ///< of the features' points along their rays
-    double bearing_sigma = 0.003;      ///< of the features' points across their rays, radians
-    int min_inliers = 25;              ///< matched points that agree with a loop closure
-    double min_inlier_ratio = 0.35;    ///< of the matches
-    double min_visible_ratio = 0.12;   ///< inliers, of the points that both views should see
-    double max_contradiction = 0.25;   ///< share of plane samples that the other view saw through
+    int max_alike = 2;
+    int max_place = 8;
 
-    int max_alike = 2;          ///< newer keyframes of the same place that look alike: an older one goes;
-                                ///< 0: all stay
-    int max_place = 8;          ///< keyframes of one place, whatever they look like; the oldest goes
-    double place_share = 0.08;  ///< keyframes are of one place when they stand nearer than this share of the
-                                ///< depth that they see,
-    double place_rad = 0.17;    ///< and are turned by less
-    double min_alike_ratio = 0.25;  ///< like points, of those that both should see, of views that look alike
+    double drift_per_metre = 0.05;
+    double drift_per_radian = 0.05;
+    double drift_base_m = 0.2;
+    double drift_base_rad = 0.2;
+    double max_lost_speed = 2.0;
 
-    double surroundings_from_m = 0.3;  ///< a loop closure that moves the newest keyframe by more (metres plus
-                                       ///< radians) must also fit what was seen around it
+    double odometry_sigma_m = 0.005;
+    double odometry_sigma_rad = 0.005;
+    double loop_sigma_m = 0.010;
+    double loop_sigma_rad = 0.005;
+    double landmark_angle_deg = 8;
+    double landmark_distance_m = 0.06;
+    double landmark_gap_m = 0.5;
+    double landmark_sigma_m = 0.01;
+    int optimise_every = 0;
 
-    double drift_per_metre = 0.05;   ///< bound of odometry's drift: metres a metre of path
-    double drift_per_radian = 0.05;  ///< metres and radians a radian of turning
-    double drift_base_m = 0.2;       ///< metres, on top
-    double drift_base_rad = 0.2;     ///< radians, on top
-    double max_lost_speed = 2.0;     ///< of the camera while odometry is lost, m/s
-
-    double odometry_sigma_m = 0.005;    ///< added to each odometry edge's covariance: metres
-    double odometry_sigma_rad = 0.005;  ///< and radians
-    double loop_sigma_m = 0.010;        ///< added to each loop closure's covariance: metres
-    double loop_sigma_rad = 0.005;      ///< and radians
-    double landmark_extent_m =
-        0.25;  ///< smaller regions are no landmarks; standard deviation of the shorter side
-    double landmark_angle_deg = 8;      ///< between a region and the landmark it is taken for
-    double landmark_distance_m = 0.06;  ///< between a region and the landmark it is taken for
-    double landmark_gap_m = 0.5;        ///< between their boxes
-    double landmark_sigma_m = 0.01;  ///< of a region's distance to its landmark, on top of the sensor's noise
-    double landmark_trigger =
-        2.0;  ///< standard deviations by which a keyframe's planes must disagree to optimise
-    double kernel_width = 3.0;  ///< Cauchy kernel of loop closures, standard deviations
-    int max_iterations = 30;    ///< of one optimisation
-    int optimise_every = 0;     ///< also without a closure, each so many keyframes; 0: never
-    double revision_m = 0.001, revision_rad = 0.0005;  ///< movement of a keyframe that makes a new revision
+    // Fixed: nobody can tell how to set these without reading the code.
+    static constexpr double min_appearance = 0.02;      ///< share of the new keyframe's rare features that a
+                                                        ///< candidate for a loop closure has too
+    static constexpr double min_overlap = 0.3;          ///< share of points in view, for a candidate by place
+    static constexpr int max_descriptor_distance = 64;  ///< bits in which two descriptors of one point differ
+    static constexpr double bearing_sigma = 0.003;     ///< of the features' points across their rays, radians
+    static constexpr double min_visible_ratio = 0.12;  ///< inliers, of the points that both views should see
+    static constexpr double max_contradiction = 0.25;  ///< share of plane samples that the other view saw
+                                                       ///< through
+    static constexpr double place_share = 0.08;  ///< keyframes are of one place when they stand nearer than
+                                                 ///< this share of the depth that they see,
+    static constexpr double place_rad = 0.17;    ///< and are turned by less
+    static constexpr double min_alike_ratio = 0.25;  ///< like points, of those that both should see, of views
+                                                     ///< that look alike
+    static constexpr double landmark_extent_m = 0.25;  ///< smaller regions are no landmarks; standard
+                                                       ///< deviation of the shorter side
+    static constexpr double landmark_trigger = 2.0;    ///< standard deviations by which a keyframe's planes
+                                                     ///< must disagree to optimise
+    static constexpr double kernel_width = 3.0;  ///< Cauchy kernel of loop closures, standard deviations
+    static constexpr int max_iterations = 30;    ///< of one optimisation
+    static constexpr double revision_m = 0.001, revision_rad = 0.0005;  ///< movement of a keyframe that makes
+                                                                        ///< a new revision
 
     /// Throws std::invalid_argument that names every bad field.
     void validate() const;
 };
+
+/// Refers to `options`, which must outlive it.
+OptionList options_of(GraphOptions& options);
 
 /// Two keyframes that saw the same place.
 struct LoopClosure {

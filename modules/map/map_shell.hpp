@@ -57,7 +57,4 @@ class MapShell : public Shell {
     bool unwritten_ = false;
 };
 
-/// Flags for the options, each named --<prefix>NAME.
-void add_flags(Flags& flags, MapOptions& options, const std::string& prefix = "");
-
 }  // namespace planemap
