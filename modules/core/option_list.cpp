@@ -51,8 +51,6 @@ bool OptionRange::contains(double value) const {
 std::string OptionRange::text() const {
     const bool below = std::isfinite(high), above = std::isfinite(low);
     if (!above && !below) return "";
-    if (above && below && low_open && high_open)
-        return "between " + number_text(low) + " and " + number_text(high) + ", both exclusive";
     if (above && below && !low_open && !high_open) return number_text(low) + " to " + number_text(high);
     const std::string from = (low_open ? "greater than " : "at least ") + number_text(low),
                       to = (high_open ? "less than " : "at most ") + number_text(high);

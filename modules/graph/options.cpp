@@ -48,15 +48,15 @@ void add_place_options(OptionList& list, GraphOptions& options) {
 void add_drift_options(OptionList& list, GraphOptions& options) {
     using enum Audience;
     list.add("drift_per_metre", options.drift_per_metre, at_least(0, "m/m"),
-             "Bound of odometry's drift, for each metre of path");
+             "Bound of odometry's drift, for each metre of path", kExpert);
     list.add("drift_per_radian", options.drift_per_radian, at_least(0),
-             "Bound of odometry's drift, metres and radians, for each radian that the camera turns");
+             "Bound of odometry's drift, metres and radians, for each radian that the camera turns", kExpert);
     list.add("drift_base_m", options.drift_base_m, at_least(0),
              "Bound of odometry's drift, on top of what path and turning add", kExpert);
     list.add("drift_base_rad", options.drift_base_rad, at_least(0),
              "Bound of odometry's drift in angle, on top of what path and turning add", kExpert);
     list.add("max_lost_speed", options.max_lost_speed, at_least(0, "m/s"),
-             "Of the camera while odometry is lost");
+             "Of the camera while odometry is lost", kExpert);
     list.add("odometry_sigma_m", options.odometry_sigma_m, greater_than(0),
              "Standard deviation that each odometry edge has beyond its own covariance", kExpert);
     list.add("odometry_sigma_rad", options.odometry_sigma_rad, greater_than(0),

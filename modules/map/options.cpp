@@ -27,7 +27,7 @@ OptionList options_of(MapOptions& options) {
     list.add("outline_tolerance_m", options.outline_tolerance_m, {0, 1},
              "By how much an outline may leave the shape that it simplifies");
     list.add("outline_min_ring_m2", options.outline_min_ring_m2, {0, 100},
-             "Smaller parts and holes of an outline are left out");
+             "Smaller parts and holes of an outline are left out", kExpert);
     list.add("see_through_m", options.see_through_m, {0.01, 100},
              "A view that sees past a plane's cell by more than this (and 2 sigmas of the sensor's noise) "
              "counts against the cell");

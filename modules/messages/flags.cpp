@@ -168,7 +168,7 @@ class Flags::Impl {
     template <typename T>
     void finish(CLI::Option* option, const T& field) {
         last = option;
-        known.push_back({option, [&field] { return value_of(field); }, ""});
+        known.push_back({option, [&field] { return value_of(field); }, "", false});
     }
 
     /// The flag of an option that is described in a list.
@@ -186,31 +186,35 @@ class Flags::Impl {
             },
             described.field);
         if (!described.choices.empty()) option->check(CLI::IsMember(described.choices));
-        const bool hidden = described.audience == Audience::kExpert;
-        option->group(hidden ? "" : heading);  // CLI11 shows no options without a group
+        option->group(heading);
         known.back().heading = heading;
-        if (hidden) offer_all();
+        known.back().expert = described.audience == Audience::kExpert;
+        if (known.back().expert) offer_all();
     }
 
-    /// With what is allowed, and the unit: "largest gap (0 to 100 m)".
+    /// With what is allowed, and the unit: "largest gap [0 to 100 m]".
     static std::string help_of(const Option& option) {
         const std::string range = option.range_and_unit();
-        return range.empty() ? option.help : option.help + " (" + range + ")";
+        return range.empty() ? option.help : option.help + " [" + range + "]";
     }
 
     /// --help-all, for a program with options that --help does not show.
     void offer_all() {
-        if (help_all) return;
-        help_all = true;
+        if (!app.get_footer().empty()) return;
+        app.footer("--help-all lists more options.");
         const auto show = [this] {
-            for (const Known& flag : known)
-                if (!flag.heading.empty()) flag.option->group(flag.heading);
-            app.footer("");
+            help_all = true;
             throw CLI::CallForHelp();
         };
         app.add_flag_callback("--help-all", show, "Print this help message with all options, and exit")
             ->configurable(false);
-        app.footer("--help-all lists more options.");
+    }
+
+    /// Before help is printed. CLI11 shows no option without a group, nor names it in an error.
+    void choose_for_help() {
+        if (help_all) app.footer("");
+        for (const Known& flag : known)
+            if (flag.expert && !help_all) flag.option->group("");
     }
 
     std::string name_of(const CLI::Option* option) const {
@@ -247,7 +251,7 @@ class Flags::Impl {
     std::string config() const {
         std::string text = "# " + app.get_name() + " " + version() + ": all options, for --config\n";
         std::string group;
-        for (const auto& [option, value, heading] : known) {
+        for (const auto& [option, value, heading, expert] : known) {
             if (!option->get_configurable()) continue;
             if (heading != group && !heading.empty()) text += "\n# " + heading + "\n";
             group = heading;
@@ -264,6 +268,7 @@ class Flags::Impl {
         CLI::Option* option;
         std::function<decltype(FlagValue::value)()> value;
         std::string heading;  ///< of its module; empty for the program's own
+        bool expert;          ///< shown by --help-all only
     };
 
     CLI::App app;
@@ -330,6 +335,7 @@ int Flags::parse(int argc, const char* const* argv) {
         if (const std::string word = impl_->single_dash(argc, argv); !word.empty()) return wrong(word);
         impl_->app.parse(argc, argv);
     } catch (const CLI::Success& success) {
+        impl_->choose_for_help();
         return impl_->app.exit(success);
     } catch (const CLI::ConfigError& error) {
         return wrong(app.get_config_ptr()->as<std::string>() + ":" + error.what());
@@ -347,7 +353,7 @@ int Flags::parse(int argc, const char* const* argv) {
 
 std::vector<FlagValue> Flags::values() const {
     std::vector<FlagValue> values;
-    for (const auto& [option, value, heading] : impl_->known)
+    for (const auto& [option, value, heading, expert] : impl_->known)
         values.push_back({impl_->name_of(option), value()});
     return values;
 }

@@ -36,7 +36,7 @@ OptionList options_of(OdometryOptions& options) {
     list.add("max_descriptors", options.max_descriptors, {10, 10000},
              "Features that a keyframe hands to loop closure", kExpert);
     list.add("max_known_keyframes", options.max_known_keyframes, {1, 100000},
-             "Keyframes that are kept to find the way again after a loss");
+             "Keyframes that are kept to find the way again after a loss", kExpert);
     list.add(
         "relocalisation_tries", options.relocalisation_tries, {0, 1000},
         "Known keyframes that a lost frame is matched with; 0: a lost camera does not find its way again",

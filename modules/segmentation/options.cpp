@@ -27,7 +27,7 @@ OptionList options_of(CellOptions& options) {
     list.add("merge_angle_deg", options.merge_angle_deg, between(0, 90),
              "Largest angle between two regions to be merged");
     list.add("bend_deg", options.bend_deg, between(0, 90),
-             "A region that turns by more from end to end is curved, and no plane");
+             "A region that turns by more from end to end is curved, and no plane", kExpert);
     list.add("thickness_m", options.thickness_m, greater_than(0),
              "Largest distance of a pixel to its region's plane; or thickness-sigmas, if that is more");
     list.add("thickness_sigmas", options.thickness_sigmas, greater_than(0),

@@ -72,7 +72,7 @@ TEST(OptionRange, SaysItselfInWords) {
     EXPECT_EQ((OptionRange{1e-6, 1e6}).text(), "1e-06 to 1000000");
     EXPECT_EQ(at_least(3).text(), "at least 3");
     EXPECT_EQ(greater_than(0.5).text(), "greater than 0.5");
-    EXPECT_EQ(between(0, 90).text(), "between 0 and 90, both exclusive");
+    EXPECT_EQ(between(0, 90).text(), "greater than 0, less than 90");
     EXPECT_EQ((OptionRange{.low = 0, .high = 1, .low_open = true}).text(), "greater than 0, at most 1");
     EXPECT_EQ(kAnyNumber.text(), "");
 }
@@ -122,7 +122,7 @@ TEST(OptionList, OneErrorNamesEveryBadField) {
     EXPECT_EQ(error_of(options),
               "options: gap_m is -1, must be 0 to 10; slack is inf, must be finite and greater than 0; "
               "threads is 0, must be at least 1; method is magic, must be fast, exact or none; "
-              "part.min_fill is nan, must be between 0 and 1, both exclusive");
+              "part.min_fill is nan, must be greater than 0, less than 1");
 }
 
 }  // namespace

@@ -108,8 +108,8 @@ TEST(Flags, HelpShowsUsersTheirOptionsAndHelpAllAllOfThem) {
     EXPECT_EQ(all.code, 0) << all.err;
     for (const std::string& text : {help.out, all.out}) {
         EXPECT_THAT(text, HasSubstr("--map-merge-distance-m"));
-        EXPECT_THAT(text, HasSubstr("[0.05]"));
-        EXPECT_THAT(text, HasSubstr("largest distance (0 to 10 m)"));
+        EXPECT_THAT(text, HasSubstr("=0.05"));
+        EXPECT_THAT(text, HasSubstr("largest distance [0 to 10 m]"));
         EXPECT_THAT(text, HasSubstr("\nMap:\n"));
     }
     for (const char* seldom : {"--map-max-points", "--map-seed"}) {

@@ -179,7 +179,7 @@ std::string simulator_help() {
     for (const Option& option : list.options()) {
         const std::string range = option.range_and_unit();
         text += "  " + option.name + std::string(13 - option.name.size(), ' ') + option.help +
-                (range.empty() ? "" : " (" + range + ")") + "\n";
+                (range.empty() ? "" : " [" + range + "]") + "\n";
     }
     text.pop_back();
     return text;
