@@ -44,6 +44,16 @@ void check_ratio(double depth, double color, const std::string& field, FieldErro
 
 }  // namespace
 
+void check_depth(const DepthNoise& noise, double min_m, double max_m, FieldErrors& errors) {
+    errors.require(min_m >= 0, "depth_min_m", min_m, "at least 0");
+    errors.require(std::isfinite(max_m) && max_m > min_m, "depth_max_m", max_m,
+                   "finite and greater than depth_min_m");
+    errors.require(noise.base_m >= 0 && noise.base_m <= 1, "noise.base_m", noise.base_m, "0 to 1");
+    errors.require(noise.quadratic_per_m >= 0 && noise.quadratic_per_m <= 1, "noise.quadratic_per_m",
+                   noise.quadratic_per_m, "0 to 1");
+    errors.require(std::abs(noise.offset_m) <= 100, "noise.offset_m", noise.offset_m, "-100 to 100");
+}
+
 void CameraInfo::validate() const {
     FieldErrors errors("camera info");
     if (serial.size() > 64)
@@ -56,14 +66,7 @@ void CameraInfo::validate() const {
                    "a rigid transform");
     errors.require(std::isfinite(depth_units_per_metre) && depth_units_per_metre > 0, "depth_units_per_metre",
                    depth_units_per_metre, "finite and greater than 0");
-    errors.require(depth_min_m >= 0, "depth_min_m", depth_min_m, "at least 0");
-    errors.require(std::isfinite(depth_max_m) && depth_max_m > depth_min_m, "depth_max_m", depth_max_m,
-                   "finite and greater than depth_min_m");
-    errors.require(std::isfinite(noise.base_m) && noise.base_m >= 0, "noise.base_m", noise.base_m,
-                   "at least 0");
-    errors.require(std::isfinite(noise.quadratic_per_m) && noise.quadratic_per_m >= 0,
-                   "noise.quadratic_per_m", noise.quadratic_per_m, "at least 0");
-    errors.require(std::isfinite(noise.offset_m), "noise.offset_m", noise.offset_m, "finite");
+    check_depth(noise, depth_min_m, depth_max_m, errors);
     errors.throw_if_any();
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/pose.hpp"
+#include "core/validation.hpp"
 
 namespace planemap {
 
@@ -39,6 +40,10 @@ struct DepthNoise {
     double sigma(double z) const { return base_m + quadratic_per_m * (z - offset_m) * (z - offset_m); }
     friend bool operator==(const DepthNoise&, const DepthNoise&) = default;
 };
+
+/// Adds each field that no sensor's depth has, named as in CameraInfo: base_m and quadratic_per_m 0 to 1,
+/// offset_m -100 to 100; a range that is not finite, negative or empty.
+void check_depth(const DepthNoise& noise, double min_m, double max_m, FieldErrors& errors);
 
 /// What an RGB-D sensor is: the project's "camera frame" is the optical frame of `color`. A sensor without
 /// colour has color equal to depth.

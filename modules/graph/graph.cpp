@@ -90,6 +90,7 @@ void check(const Keyframe& keyframe, std::optional<int> last_id) {
         errors.require(feature.region >= -1 && feature.region < regions, name + ".region", feature.region,
                        "-1 or an index into regions");
     }
+    check_depth(keyframe.noise, keyframe.depth_min_m, keyframe.depth_max_m, errors);
     for (std::size_t i = 0; i < keyframe.regions.size() && !errors.any(); ++i) {
         errors.require(is_valid(keyframe.regions[i]), "regions[" + std::to_string(i) + "]", "not valid",
                        "finite, with a unit normal and at least three points");
@@ -100,7 +101,6 @@ void check(const Keyframe& keyframe, std::optional<int> last_id) {
 graph::VerificationOptions verification_options(const GraphOptions& options) {
     graph::VerificationOptions out;
     out.matching = {options.max_descriptor_distance, options.matching_ratio};
-    out.noise = options.noise;
     out.bearing_sigma = options.bearing_sigma;
     out.min_inliers = options.min_inliers;
     out.min_inlier_ratio = options.min_inlier_ratio;
@@ -116,7 +116,6 @@ graph::LandmarkOptions landmark_options(const GraphOptions& options) {
     out.max_distance_m = options.landmark_distance_m;
     out.max_gap_m = options.landmark_gap_m;
     out.sigma_m = options.landmark_sigma_m;
-    out.noise = options.noise;
     return out;
 }
 
@@ -235,7 +234,7 @@ class PoseGraph::Impl {
     double sight(const Keyframe& keyframe) {
         Components parts = components();
         if (parts.find(newest()) != parts.find(0)) return 0;
-        return landmarks_.add(newest(), keyframe.regions, poses_.back());
+        return landmarks_.add(newest(), keyframe.regions, poses_.back(), keyframe.noise);
     }
 
     void extend(const Keyframe& keyframe) {
@@ -749,8 +748,7 @@ bool PoseGraph::Impl::is_alike(int a, int b) const {
     const bool is_bare = view_a.points.size() < kFewPoints && view_b.points.size() < kFewPoints;
     if (!is_bare && points.agree < std::max<double>(kFewPoints, options_.min_alike_ratio * points.visible))
         return false;
-    const graph::PlaneAgreement planes =
-        graph::compare_planes(view_a, view_b, a_from_b, options_.noise, kSlack_m);
+    const graph::PlaneAgreement planes = graph::compare_planes(view_a, view_b, a_from_b, kSlack_m);
     if (is_bare && planes.agree == 0) return false;
     return planes.contradict <= options_.max_contradiction * (planes.agree + planes.contradict);
 }

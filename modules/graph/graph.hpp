@@ -21,7 +21,6 @@ struct GraphOptions {
     int max_closures = 2;
     double max_place_drift_m = 1.0;
     double matching_ratio = 0.85;
-    DepthNoise noise;  ///< of the features' points along their rays
     int min_inliers = 25;
     double min_inlier_ratio = 0.35;
     double surroundings_from_m = 0.3;
@@ -62,7 +61,7 @@ struct GraphOptions {
     static constexpr double landmark_extent_m = 0.25;  ///< smaller regions are no landmarks; standard
                                                        ///< deviation of the shorter side
     static constexpr double landmark_trigger = 2.0;    ///< standard deviations by which a keyframe's planes
-                                                     ///< must disagree to optimise
+                                                       ///< must disagree to optimise
     static constexpr double kernel_width = 3.0;  ///< Cauchy kernel of loop closures, standard deviations
     static constexpr int max_iterations = 30;    ///< of one optimisation
     static constexpr double revision_m = 0.001, revision_rad = 0.0005;  ///< movement of a keyframe that makes

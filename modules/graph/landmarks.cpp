@@ -50,7 +50,8 @@ int Landmarks::standing(int landmark) const {
     return landmark;
 }
 
-double Landmarks::add(int node, const std::vector<PlanarRegion>& regions, const Pose& world_from_camera) {
+double Landmarks::add(int node, const std::vector<PlanarRegion>& regions, const Pose& world_from_camera,
+                      const DepthNoise& noise) {
     double worst = 0;
     for (const PlanarRegion& region : regions) {
         const PlaneFit fit = fit_plane(region.moments);
@@ -62,7 +63,7 @@ double Landmarks::add(int node, const std::vector<PlanarRegion>& regions, const 
         const Eigen::Vector3d v = std::sqrt(fit.variances[1]) * fit.axes.col(1);
         sighting.points_camera = {centre + u, centre + v, centre - u, centre - v};
         for (auto& p : sighting.points_camera) p = region.plane.project(p);
-        sighting.sqrt_weight = 1 / std::hypot(options_.sigma_m, options_.noise.sigma(centre.z()));
+        sighting.sqrt_weight = 1 / std::hypot(options_.sigma_m, noise.sigma(centre.z()));
 
         Candidate candidate{world_from_camera * region.plane, world_from_camera * region.box, {}};
         for (std::size_t i = 0; i < 4; ++i)

@@ -23,11 +23,6 @@ void add_closure_options(OptionList& list, GraphOptions& options) {
              "With more drift between two keyframes, where they are does not make them candidates", kExpert);
     list.add("matching_ratio", options.matching_ratio, kShare,
              "Largest ratio of the best to the second-best descriptor distance of a match", kExpert);
-    list.add("noise.base_m", options.noise.base_m, at_least(0), "Depth noise: its constant part", kExpert);
-    list.add("noise.quadratic_per_m", options.noise.quadratic_per_m, at_least(0),
-             "Depth noise: its growth with the square of the distance", kExpert);
-    list.add("noise.offset_m", options.noise.offset_m, kAnyNumber, "Depth noise: the distance of least noise",
-             kExpert);
     list.add("min_inliers", options.min_inliers, at_least(3),
              "Matched points that must agree with a loop closure");
     list.add("min_inlier_ratio", options.min_inlier_ratio, kShare,

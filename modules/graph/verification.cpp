@@ -27,21 +27,30 @@ struct PointPair {
     double variance = 0;  ///< in the worst direction, of both
 };
 
+/// Standard deviation of depth at z in the noisier of both views.
+double worst_sigma(const View& a, const View& b, double z) {
+    return std::max(a.noise.sigma(z), b.noise.sigma(z));
+}
+
 /// Uncertainty of a point: depth noise along its ray, pixel noise across it.
-Eigen::Matrix3d point_covariance(const Eigen::Vector3d& p, const VerificationOptions& options) {
+Eigen::Matrix3d point_covariance(const Eigen::Vector3d& p, const DepthNoise& noise,
+                                 const VerificationOptions& options) {
     const Eigen::Vector3d ray = p.normalized();
-    const double along = options.noise.sigma(p.z()), across = options.bearing_sigma * p.norm();
+    const double along = noise.sigma(p.z()), across = options.bearing_sigma * p.norm();
     return across * across * Eigen::Matrix3d::Identity() +
            std::max(0.0, along * along - across * across) * ray * ray.transpose();
 }
 
-PointPair make_pair(const Eigen::Vector3d& p_a, const Eigen::Vector3d& p_b,
-                    const VerificationOptions& options) {
-    const auto worst = [&](const Eigen::Vector3d& p) {
-        return std::max(options.noise.sigma(p.z()), options.bearing_sigma * p.norm());
+/// The points of a match.
+PointPair make_pair(const View& a, const View& b, const Match& match, const VerificationOptions& options) {
+    const Eigen::Vector3d &p_a = a.points[static_cast<std::size_t>(match.first)],
+                          &p_b = b.points[static_cast<std::size_t>(match.second)];
+    const auto worst = [&](const Eigen::Vector3d& p, const DepthNoise& noise) {
+        return std::max(noise.sigma(p.z()), options.bearing_sigma * p.norm());
     };
-    return {p_a, p_b, point_covariance(p_a, options), point_covariance(p_b, options),
-            worst(p_a) * worst(p_a) + worst(p_b) * worst(p_b)};
+    const double worst_a = worst(p_a, a.noise), worst_b = worst(p_b, b.noise);
+    return {p_a, p_b, point_covariance(p_a, a.noise, options), point_covariance(p_b, b.noise, options),
+            worst_a * worst_a + worst_b * worst_b};
 }
 
 /// Information of the difference of a pair in frame a.
@@ -90,11 +99,11 @@ Pose align_three(const std::array<const PointPair*, 3>& sample) {
 }
 
 /// True when the triangle has about the same sides in both views and they are long enough to tell a rotation.
-bool is_sound_sample(const std::array<const PointPair*, 3>& sample, const VerificationOptions& options) {
+bool is_sound_sample(const std::array<const PointPair*, 3>& sample, const View& a, const View& b) {
     for (std::size_t i = 0; i < 3; ++i) {
         const PointPair &p = *sample[i], &q = *sample[(i + 1) % 3];
         const double length_a = (p.p_a - q.p_a).norm(), length_b = (p.p_b - q.p_b).norm();
-        const double noise = options.noise.sigma(std::max({p.p_a.z(), q.p_a.z(), p.p_b.z(), q.p_b.z()}));
+        const double noise = worst_sigma(a, b, std::max({p.p_a.z(), q.p_a.z(), p.p_b.z(), q.p_b.z()}));
         if (std::min(length_a, length_b) < 0.1 || std::abs(length_a - length_b) > 0.02 + 4 * noise)
             return false;
     }
@@ -106,8 +115,8 @@ struct Consensus {
     int inliers = 0;  ///< by count_near()
 };
 
-Consensus ransac(const std::vector<PointPair>& pairs, const VerificationOptions& options,
-                 std::uint64_t seed) {
+Consensus ransac(const View& a, const View& b, const std::vector<PointPair>& pairs,
+                 const VerificationOptions& options, std::uint64_t seed) {
     Consensus best;
     std::mt19937_64 engine(seed);
     std::uniform_int_distribution<std::size_t> pick(0, pairs.size() - 1);
@@ -116,7 +125,7 @@ Consensus ransac(const std::vector<PointPair>& pairs, const VerificationOptions&
     for (int tries = 0, i = 0; i < needed && tries < 20 * options.max_ransac_iterations; ++tries) {
         const std::array<const PointPair*, 3> sample{&pairs[pick(engine)], &pairs[pick(engine)],
                                                      &pairs[pick(engine)]};
-        if (!is_sound_sample(sample, options)) continue;
+        if (!is_sound_sample(sample, a, b)) continue;
         ++i;
         const Pose a_from_b = align_three(sample);
         const int inliers = count_near(pairs, a_from_b);
@@ -184,7 +193,7 @@ std::vector<PlanePair> pair_planes(const View& a, const View& b, const Pose& a_f
 
 /// The centre of b's region lies on a's plane, and the normals agree. What a's plane says far from its own
 /// region counts less.
-void add_planes(const std::vector<PlanePair>& pairs, const Pose& a_from_b, const DepthNoise& noise,
+void add_planes(const View& a, const View& b, const std::vector<PlanePair>& pairs, const Pose& a_from_b,
                 NormalEquations& equations) {
     constexpr double kNormalSigma = 0.01;  // radians: what a sensor's distortion leaves
     const Eigen::Matrix3d r = a_from_b.linear();
@@ -194,7 +203,7 @@ void add_planes(const std::vector<PlanePair>& pairs, const Pose& a_from_b, const
         const Eigen::Vector3d centre = a_from_b * centre_b;
         const double reach = (centre - pair.a->box.frame_from_box.translation()).norm();
         const double sigma = 0.003 +
-                             0.5 * noise.sigma(std::max(std::abs(centre.z()), std::abs(centre_b.z()))) +
+                             0.5 * worst_sigma(a, b, std::max(std::abs(centre.z()), std::abs(centre_b.z()))) +
                              kNormalSigma * reach;
         const Eigen::Vector3d u = plane_a.normal.unitOrthogonal(), v = plane_a.normal.cross(u);
         Eigen::Matrix<double, 2, 3> across;
@@ -224,7 +233,7 @@ Refined refine(const View& a, const View& b, const std::vector<PointPair>& pairs
         const std::vector<PlanePair> planes = pair_planes(a, b, a_from_b);
         NormalEquations equations;
         add_points(pairs, a_from_b, equations);
-        add_planes(planes, a_from_b, options.noise, equations);
+        add_planes(a, b, planes, a_from_b, equations);
         const Eigen::LDLT<Matrix6d> solver(equations.information);
         const Twist step = solver.solve(-equations.gradient);
         refined.determined = solver.info() == Eigen::Success && solver.isPositive() && step.allFinite();
@@ -248,7 +257,7 @@ std::vector<Match> match_at(const View& a, const View& b, const Pose& a_from_b,
         const Eigen::Vector3d p = a_from_b * b.points[j];
         if (!a.sees(p)) continue;
         const double reach =
-            slack_m + kInlierSigmas * (options.noise.sigma(p.z()) + options.bearing_sigma * p.norm());
+            slack_m + kInlierSigmas * (worst_sigma(a, b, p.z()) + options.bearing_sigma * p.norm());
         Match best;
         int best_distance = options.matching.max_distance + 1;
         for (std::size_t i = 0; i < a.points.size(); ++i) {
@@ -273,10 +282,7 @@ std::vector<PointPair> make_pairs(const View& a, const View& b, const std::vecto
                                   const VerificationOptions& options) {
     std::vector<PointPair> pairs;
     pairs.reserve(matches.size());
-    for (const Match& match : matches) {
-        pairs.push_back(make_pair(a.points[static_cast<std::size_t>(match.first)],
-                                  b.points[static_cast<std::size_t>(match.second)], options));
-    }
+    for (const Match& match : matches) pairs.push_back(make_pair(a, b, match, options));
     return pairs;
 }
 
@@ -349,8 +355,7 @@ double ray_cast(const View& view, const Eigen::Vector3d& p) {
 }
 
 /// Where samples of b's regions lie with respect to the surfaces that a saw.
-PlaneAgreement compare_one_way(const View& a, const View& b, const Pose& a_from_b, const DepthNoise& noise,
-                               double slack_m) {
+PlaneAgreement compare_one_way(const View& a, const View& b, const Pose& a_from_b, double slack_m) {
     PlaneAgreement agreement;
     for (const PlanarRegion& region : b.regions) {
         for (const Eigen::Vector3d& sample : samples_of(region)) {
@@ -358,7 +363,8 @@ PlaneAgreement compare_one_way(const View& a, const View& b, const Pose& a_from_
             if (!a.sees(p)) continue;
             const double behind = (ray_cast(a, p) - 1) * p.z();
             if (!std::isfinite(behind)) continue;
-            const double margin = kPlaneDistance + slack_m + 3 * noise.sigma(p.z() + std::max(0.0, behind));
+            const double margin =
+                kPlaneDistance + slack_m + 3 * worst_sigma(a, b, p.z() + std::max(0.0, behind));
             if (behind > 2 * margin) ++agreement.contradict;
             if (std::abs(behind) < margin) ++agreement.agree;
         }
@@ -368,10 +374,9 @@ PlaneAgreement compare_one_way(const View& a, const View& b, const Pose& a_from_
 
 }  // namespace
 
-PlaneAgreement compare_planes(const View& a, const View& b, const Pose& a_from_b, const DepthNoise& noise,
-                              double slack_m) {
-    const PlaneAgreement of_b = compare_one_way(a, b, a_from_b, noise, slack_m);
-    const PlaneAgreement of_a = compare_one_way(b, a, a_from_b.inverse(Eigen::Isometry), noise, slack_m);
+PlaneAgreement compare_planes(const View& a, const View& b, const Pose& a_from_b, double slack_m) {
+    const PlaneAgreement of_b = compare_one_way(a, b, a_from_b, slack_m);
+    const PlaneAgreement of_a = compare_one_way(b, a, a_from_b.inverse(Eigen::Isometry), slack_m);
     return {of_a.agree + of_b.agree, of_a.contradict + of_b.contradict};
 }
 
@@ -391,7 +396,7 @@ Verification verify(const View& a, const View& b, const VerificationOptions& opt
     if (result.matches < std::max(3, options.min_inliers)) return result;
 
     result.verdict = Verdict::kFewInliers;
-    const Consensus consensus = ransac(pairs, options, seed);
+    const Consensus consensus = ransac(a, b, pairs, options, seed);
     const int needed =
         std::max(options.min_inliers, static_cast<int>(options.min_inlier_ratio * result.matches));
     if (2 * consensus.inliers < needed) return result;  // refinement may double them, not more
@@ -416,7 +421,7 @@ Verification verify(const View& a, const View& b, const VerificationOptions& opt
     result.verdict = Verdict::kBadSpread;
     if (!spread_suffices(a, b, more, refined, options)) return result;
     result.verdict = Verdict::kContradiction;
-    const PlaneAgreement planes = compare_planes(a, b, result.a_from_b, options.noise);
+    const PlaneAgreement planes = compare_planes(a, b, result.a_from_b);
     if (planes.contradict > options.max_contradiction * (planes.agree + planes.contradict)) return result;
     result.verdict = Verdict::kAccepted;
     return result;

@@ -11,7 +11,6 @@ namespace planemap::graph {
 
 struct VerificationOptions {
     MatchingOptions matching;
-    DepthNoise noise;              ///< of the points along their rays
     double bearing_sigma = 0.003;  ///< of the points across their rays, radians
     int max_ransac_iterations = 300;
     int min_inliers = 25;             ///< matched points that agree with the pose
@@ -52,8 +51,7 @@ Verification verify(const View& a, const View& b, const VerificationOptions& opt
 struct PlaneAgreement {
     int agree = 0, contradict = 0;
 };
-PlaneAgreement compare_planes(const View& a, const View& b, const Pose& a_from_b, const DepthNoise& noise,
-                              double slack_m = 0);
+PlaneAgreement compare_planes(const View& a, const View& b, const Pose& a_from_b, double slack_m = 0);
 
 /// Of the points of b that a should see, how many lie within slack_m and noise of one of a with a like
 /// descriptor.

@@ -178,6 +178,7 @@ void PlaneMapper::add(const Keyframe& keyframe) {
     StoredKeyframe& kept = keyframes_[keyframe.id];
     const bool replaces_one_in_the_map = kept.world_from_camera.has_value();
     kept = stored(keyframe.utime, regions);
+    kept.noise = keyframe.noise;
     if (replaces_one_in_the_map) {
         rebuild();
     } else {
@@ -261,19 +262,19 @@ PlaneMapper::View::View(const StoredKeyframe& seen)
 }
 
 /// Inverse variance of a view about the plane, relative to a noise-free sensor.
-double PlaneMapper::weight(const StoredRegion& region) const {
-    const double sigma = options_.noise.sigma(mean_depth(region));
+double PlaneMapper::weight(const StoredRegion& region, const DepthNoise& noise) const {
+    const double sigma = noise.sigma(mean_depth(region));
     const double pose_variance = options_.pose_sigma_m * options_.pose_sigma_m;
     return pose_variance / (pose_variance + sigma * sigma);
 }
 
-Reliability PlaneMapper::reliability(const StoredRegion& region) const {
-    return {weight(region), std::hypot(options_.agreement_m, options_.noise.sigma(mean_depth(region)))};
+Reliability PlaneMapper::reliability(const StoredRegion& region, const DepthNoise& noise) const {
+    return {weight(region, noise), std::hypot(options_.agreement_m, noise.sigma(mean_depth(region)))};
 }
 
 /// What a view counts for in the shape: 2^strength.
-int PlaneMapper::strength(const StoredRegion& region) const {
-    const double w = weight(region);
+int PlaneMapper::strength(const StoredRegion& region, const DepthNoise& noise) const {
+    const double w = weight(region, noise);
     return w > 0.5 ? 2 : w > 0.2 ? 1 : 0;
 }
 
@@ -281,7 +282,7 @@ int PlaneMapper::strength(const StoredRegion& region) const {
 Surface PlaneMapper::surface_of(int id, const PlacedRegion& placed, const StoredRegion& region,
                                 const StoredKeyframe& keyframe) {
     outline_in(Pose::Identity(), region, keyframe, polygon_);
-    Surface surface(placed, polygon_, reliability(region));
+    Surface surface(placed, polygon_, reliability(region, keyframe.noise));
     surface.id = id;
     return surface;
 }
@@ -291,7 +292,7 @@ void PlaneMapper::take_in(Surface& surface, const PlacedRegion& placed, const St
                           const StoredKeyframe& keyframe) {
     outline_in(surface.world_from_extent.inverse(Eigen::Isometry) * placed.box.frame_from_box, region,
                keyframe, polygon_);
-    surface.add(placed, polygon_, reliability(region));
+    surface.add(placed, polygon_, reliability(region, keyframe.noise));
 }
 
 /// Draws a region that a surface took in, and counts its keyframe.
@@ -301,7 +302,7 @@ void PlaneMapper::draw(Surface& surface, const PlacedRegion& placed, const Store
         surface.grid = EvidenceGrid(surface.box.frame_from_box, options_.outline_cell_m);
     outline_in(surface.grid.world_from_grid().inverse(Eigen::Isometry) * placed.box.frame_from_box, region,
                keyframe, polygon_);
-    surface.unshown += surface.grid.add(polygon_, strength(region));
+    surface.unshown += surface.grid.add(polygon_, strength(region, keyframe.noise));
     if (surface.last_keyframe != keyframe_id) surface.keyframes += region.keyframes;
     surface.last_keyframe = keyframe_id;
 }
@@ -435,7 +436,7 @@ void PlaneMapper::doubt(Surface& surface, const View& view, const Footprint& foo
         const Plane& beyond = view.planes[region];
         // Depth of that region along the ray through the point.
         const double depth = -beyond.d / beyond.normal.dot(p) * p.z();
-        if (depth > p.z() + options_.see_through_m + 2 * options_.noise.sigma(depth))
+        if (depth > p.z() + options_.see_through_m + 2 * view.keyframe->noise.sigma(depth))
             lost += surface.grid.doubt(block, kDoubtStrength);
     }
     surface.unshown += lost;
@@ -507,7 +508,8 @@ void PlaneMapper::replace(const std::vector<Replacement>& gone) {
     }
     for (const StoredKeyframe& keyframe : leaving) {
         const auto heirs = heirs_of(keyframe);
-        hand_over(keyframe, heirs, [this](const StoredRegion& r) { return reliability(r).sigma_m; });
+        hand_over(keyframe, heirs,
+                  [&](const StoredRegion& r) { return reliability(r, keyframe.noise).sigma_m; });
         ++replaced_;
         settled_ = false;
     }
@@ -594,7 +596,8 @@ void PlaneMapper::rebuild() {
             StoredRegion& region = keyframe.regions[i];
             before.push_back(resolved(region.plane));
             region.plane = -1;
-            entries.push_back({weight(region) * static_cast<double>(region.count), id, i, &keyframe});
+            entries.push_back(
+                {weight(region, keyframe.noise) * static_cast<double>(region.count), id, i, &keyframe});
         }
     }
     std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
@@ -675,7 +678,7 @@ void PlaneMapper::redraw(Surface& surface, const std::vector<DrawnRegion>& regio
     for (const DrawnRegion& drawn : regions) {
         const StoredRegion& region = drawn.keyframe->regions[drawn.region];
         outline_in(grid_from_world * drawn.world_from_box, region, *drawn.keyframe, polygon);
-        surface.grid.add(polygon, strength(region));
+        surface.grid.add(polygon, strength(region, drawn.keyframe->noise));
     }
     look_through(surface, views);
     surface.unshown = kAllCells;

@@ -24,7 +24,6 @@ struct MapOptions {
     double merge_distance_m = 0.05;
     double merge_gap_m = 0.5;
 
-    DepthNoise noise;  ///< of the depth sensor: a far, noisy view weighs less in a plane's fit
     double pose_sigma_m = 0.02;
     double agreement_m = 0.01;
 
@@ -167,9 +166,9 @@ class PlaneMapper {
         Pose world_from_box;
     };
     bool is_usable(const PlanarRegion& region) const;
-    double weight(const StoredRegion& region) const;
-    Reliability reliability(const StoredRegion& region) const;
-    int strength(const StoredRegion& region) const;
+    double weight(const StoredRegion& region, const DepthNoise& noise) const;
+    Reliability reliability(const StoredRegion& region, const DepthNoise& noise) const;
+    int strength(const StoredRegion& region, const DepthNoise& noise) const;
     void drop_waiting();
     void place(int keyframe_id);
     std::size_t join(SurfaceSet& set, const PlacedRegion& placed, const StoredRegion& region,

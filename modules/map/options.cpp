@@ -12,11 +12,6 @@ OptionList options_of(MapOptions& options) {
              "Largest distance between the planes of merged regions, where the regions are (section 2.3)");
     list.add("merge_gap_m", options.merge_gap_m, {0, 100},
              "Largest gap between the boxes of merged regions (section 2.3)");
-    list.add("noise.base_m", options.noise.base_m, {0, 1}, "Depth noise: its constant part", kExpert);
-    list.add("noise.quadratic_per_m", options.noise.quadratic_per_m, {0, 1},
-             "Depth noise: its growth with the square of the distance", kExpert);
-    list.add("noise.offset_m", options.noise.offset_m, {-100, 100},
-             "Depth noise: the distance of least noise", kExpert);
     list.add(
         "pose_sigma_m", options.pose_sigma_m, {1e-6, 10},
         "Standard deviation of keyframe poses; a view whose depth noise is smaller gains no weight by it");

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/validation.hpp"
 #include "messages/image_codec.hpp"
 
 namespace planemap {
@@ -272,8 +273,30 @@ keyframe_t to_message(const Keyframe& keyframe, std::int32_t seq) {
     message.n_descriptor_bytes = count32(message.descriptors.size());
     message.regions = to_messages(keyframe.regions);
     message.n_regions = count32(message.regions.size());
+    message.noise_base_m = keyframe.noise.base_m;
+    message.noise_quadratic_per_m = keyframe.noise.quadratic_per_m;
+    message.noise_offset_m = keyframe.noise.offset_m;
+    message.depth_min_m = keyframe.depth_min_m;
+    message.depth_max_m = keyframe.depth_max_m;
     return message;
 }
+
+namespace {
+
+void read_depth(const keyframe_t& message, Keyframe& keyframe) {
+    keyframe.noise = {message.noise_base_m, message.noise_quadratic_per_m, message.noise_offset_m};
+    keyframe.depth_min_m = message.depth_min_m;
+    keyframe.depth_max_m = message.depth_max_m;
+    FieldErrors errors("keyframe");
+    check_depth(keyframe.noise, keyframe.depth_min_m, keyframe.depth_max_m, errors);
+    try {
+        errors.throw_if_any();
+    } catch (const std::invalid_argument& error) {
+        throw MessageError(error.what());
+    }
+}
+
+}  // namespace
 
 Keyframe from_message(const keyframe_t& message) {
     Keyframe keyframe;
@@ -289,6 +312,7 @@ Keyframe from_message(const keyframe_t& message) {
         from_message(message.previous_from_camera, "keyframe.previous_from_camera");
     keyframe.covariance = covariance_from(message.covariance, "keyframe.covariance");
     keyframe.regions = from_messages(message.regions);
+    read_depth(message, keyframe);
     constexpr std::size_t kBytes = std::tuple_size_v<Descriptor>;
     const auto features = static_cast<std::size_t>(message.n_features);
     require(message.descriptors.size() == features * kBytes, "keyframe.n_descriptor_bytes",

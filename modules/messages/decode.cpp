@@ -136,6 +136,7 @@ void walk(Walker& w, const keyframe_t*) {
     w.array(features, 2, "regions_of");
     w.array(w.length("n_descriptor_bytes"), 1, "descriptors");
     walk_regions(w);
+    w.skip(5 * 8, "noise");
 }
 void walk(Walker& w, const trajectory_t*) {
     w.skip(8 + 4 + 4 + 4 + kTransform, "trajectory");

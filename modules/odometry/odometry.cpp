@@ -595,6 +595,9 @@ Keyframe Odometry::State::add_keyframe(PreparedFrame& view, LocalKeyframe local,
                                        const Pose& odom_from_camera) {
     Keyframe keyframe;
     keyframe.utime = keyframe.pose_utime = view.utime;
+    keyframe.noise = view.camera->noise;
+    keyframe.depth_min_m = view.camera->depth_min_m;
+    keyframe.depth_max_m = view.camera->depth_max_m;
     keyframe.id = local.id = next_id_++;
     keyframe.odom_from_camera = local.odom_from_keyframe = odom_from_camera;
     keyframe.regions = view.regions;

@@ -119,18 +119,17 @@ TEST_F(VerificationTest, ASurfaceThatTheOtherSawThroughIsAVeto) {
 
 TEST_F(VerificationTest, PlaneAgreementCountsSamples) {
     View a = view_at(here_), b = a;
-    EXPECT_EQ(compare_planes(a, b, Pose::Identity(), {}).agree, 0);
+    EXPECT_EQ(compare_planes(a, b, Pose::Identity()).agree, 0);
     a.regions = {wall(2.7)};
     b.regions = {wall(2.72)};
-    const PlaneAgreement same = compare_planes(a, b, Pose::Identity(), {});
+    const PlaneAgreement same = compare_planes(a, b, Pose::Identity());
     EXPECT_GT(same.agree, 20);
     EXPECT_EQ(same.contradict, 0);
     b.regions = {wall(1.0, 0.3)};
-    const PlaneAgreement before = compare_planes(a, b, Pose::Identity(), {});
+    const PlaneAgreement before = compare_planes(a, b, Pose::Identity());
     EXPECT_EQ(before.agree, 0);
     EXPECT_GT(before.contradict, 20);
-    EXPECT_EQ(compare_planes(a, b, looking(Eigen::Vector3d::Zero(), M_PI), {}).contradict, 0)
-        << "out of view";
+    EXPECT_EQ(compare_planes(a, b, looking(Eigen::Vector3d::Zero(), M_PI)).contradict, 0) << "out of view";
 }
 
 TEST_F(VerificationTest, PlanesSharpenTheRotation) {
