@@ -226,8 +226,7 @@ struct Refined {
     bool determined = false;
 };
 
-Refined refine(const View& a, const View& b, const std::vector<PointPair>& pairs, Pose a_from_b,
-               const VerificationOptions& options) {
+Refined refine(const View& a, const View& b, const std::vector<PointPair>& pairs, Pose a_from_b) {
     Refined refined;
     for (int i = 0; i < 10; ++i) {
         const std::vector<PlanePair> planes = pair_planes(a, b, a_from_b);
@@ -400,13 +399,13 @@ Verification verify(const View& a, const View& b, const VerificationOptions& opt
     const int needed =
         std::max(options.min_inliers, static_cast<int>(options.min_inlier_ratio * result.matches));
     if (2 * consensus.inliers < needed) return result;  // refinement may double them, not more
-    Refined refined = refine(a, b, pairs, consensus.a_from_b, options);
+    Refined refined = refine(a, b, pairs, consensus.a_from_b);
     if (!refined.determined) return result;
     result.inliers = count_inliers(pairs, refined.a_from_b);
     if (result.inliers < needed) return result;
 
     std::vector<PointPair> more = make_pairs(a, b, match_at(a, b, refined.a_from_b, options), options);
-    refined = refine(a, b, more, refined.a_from_b, options);
+    refined = refine(a, b, more, refined.a_from_b);
     if (!refined.determined) return result;
     std::erase_if(more, [&](const PointPair& pair) {
         return squared_sigmas(pair, refined.a_from_b) >= kInlierSigmas * kInlierSigmas;

@@ -210,8 +210,9 @@ FrameRegions from_message(const planar_regions_t& message) {
     return {message.utime, from_messages(message.regions)};
 }
 
-odometry_t to_message(const OdometryEstimate& estimate, std::int32_t seq) {
+odometry_t to_message(const OdometryEstimate& estimate, std::int32_t seq, std::int64_t session) {
     odometry_t message;
+    message.session = session;
     message.utime = estimate.utime;
     message.pose_utime = estimate.pose_utime;
     message.seq = seq;
@@ -252,8 +253,9 @@ bot_core::pose_t to_pose_message(const OdometryEstimate& estimate) {
     return message;
 }
 
-keyframe_t to_message(const Keyframe& keyframe, std::int32_t seq) {
+keyframe_t to_message(const Keyframe& keyframe, std::int32_t seq, std::int64_t session) {
     keyframe_t message;
+    message.session = session;
     message.utime = keyframe.utime;
     message.pose_utime = keyframe.pose_utime;
     message.seq = seq;
@@ -332,8 +334,9 @@ Keyframe from_message(const keyframe_t& message) {
     return keyframe;
 }
 
-trajectory_t to_message(const KeyframeTrajectory& trajectory, std::int32_t seq) {
+trajectory_t to_message(const KeyframeTrajectory& trajectory, std::int32_t seq, std::int64_t session) {
     trajectory_t message;
+    message.session = session;
     message.utime = trajectory.utime;
     message.seq = seq;
     message.revision = trajectory.revision;

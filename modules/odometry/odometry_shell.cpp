@@ -122,10 +122,11 @@ void OdometryShell::process(const Waiting& input) {
         const ModuleStatus::Work work(status_);
         result = odometry_.process(in);
     }
-    bus_.publish(channels::kOdometry, to_message(result.estimate, odometry_seq_++));
+    bus_.publish(channels::kOdometry, to_message(result.estimate, odometry_seq_++, bus_.session()));
     if (result.estimate.status != TrackingStatus::kLost)
         bus_.publish(channels::kPose, to_pose_message(result.estimate));
-    if (result.keyframe) bus_.publish(channels::kKeyframe, to_message(*result.keyframe, keyframe_seq_++));
+    if (result.keyframe)
+        bus_.publish(channels::kKeyframe, to_message(*result.keyframe, keyframe_seq_++, bus_.session()));
     status_.published();
     const bool is_lost = result.estimate.status == TrackingStatus::kLost;
     const char* const fault = is_lost ? fault_of_depth(frame) : nullptr;

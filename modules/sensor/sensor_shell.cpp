@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 #include <stdexcept>
 
 #include "core/validation.hpp"
@@ -16,11 +15,6 @@ namespace planemap {
 
 namespace {
 constexpr std::int64_t kCameraPeriodUs = 1000000;
-
-std::uint64_t random_sender() {
-    std::random_device random;
-    return std::uint64_t{random()} << 32 | random();
-}
 }  // namespace
 
 void SensorShellOptions::validate() const {
@@ -36,7 +30,7 @@ SensorShell::SensorShell(Bus& bus, std::unique_ptr<FrameSource> source, SensorSh
     options_.validate();
     for (const std::string& note : source_->notes()) spdlog::warn("{}", note);
     if (options_.live) ahead_ = std::make_unique<ReadAhead>(source_);
-    if (!bus_.in_process()) sender_ = random_sender();
+    if (bus_.session() != 0) sender_ = static_cast<std::uint64_t>(bus_.session());
 }
 
 /// The first fault of each kind is told at once; the status and the bus's complaints count them all.

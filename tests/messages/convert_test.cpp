@@ -77,6 +77,8 @@ TEST(Convert, KeyframeRoundTrip) {
     EXPECT_EQ(back.pose_utime, keyframe.pose_utime);
     EXPECT_TRUE(back.odom_from_camera.isApprox(keyframe.odom_from_camera, 1e-12));
     EXPECT_EQ(back.covariance, keyframe.covariance);
+    EXPECT_EQ(to_message(keyframe, 1).session, 0);
+    EXPECT_EQ(to_message(keyframe, 1, 9).session, 9);
     EXPECT_EQ(back.noise, keyframe.noise);
     EXPECT_EQ(back.depth_min_m, keyframe.depth_min_m);
     EXPECT_EQ(back.depth_max_m, keyframe.depth_max_m);
