@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Maps a recording to planes: all modules in this process, on a bus of their own, as planemap-run does it.
-//   01_map_a_folder INPUT plane_map.lcmlog     INPUT: a folder in the layout of the TUM benchmark, or sim:office?frames=60
+//   01_map_a_folder INPUT plane_map.lcmlog     INPUT: a folder in the layout of the TUM benchmark, or
+//   sim:office?frames=60
 #include <cstdio>
 #include <exception>
 

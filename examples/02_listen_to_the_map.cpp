@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Listens to PLANEMAP_MAP and prints the planes of each map that comes, until one has come N times (default: for ever).
+// Listens to PLANEMAP_MAP and prints the planes of each map that comes, until one has come N times (default:
+// for ever).
 //   02_listen_to_the_map [LCM-URL [N]]
 #include <cstdio>
 #include <cstdlib>
@@ -18,8 +19,8 @@ void print(const planemap::PlaneMap& map) {
     for (const planemap::MapPlane& plane : map.planes) {
         // n.p + d = 0 in the world frame, the normal towards where it was seen from.
         const planemap::Plane p = plane.plane();
-        std::printf("  %d %-10s normal %6.3f %6.3f %6.3f  d %6.3f m\n", plane.id, label_name(plane.label), p.normal.x(),
-                    p.normal.y(), p.normal.z(), p.d);
+        std::printf("  %d %-10s normal %6.3f %6.3f %6.3f  d %6.3f m\n", plane.id, label_name(plane.label),
+                    p.normal.x(), p.normal.y(), p.normal.z(), p.d);
     }
 }
 
@@ -28,7 +29,8 @@ void listen(const char* url, long wanted) {
     long heard = 0;
     // What cannot be decoded throws; the bus counts it, says so once, and goes on.
     bus.subscribe(planemap::messages::channels::kMap, [&](const planemap::messages::RawMessage& message) {
-        print(planemap::messages::from_message(planemap::messages::decode<planemap::plane_map_t>(message.bytes)));
+        print(planemap::messages::from_message(
+            planemap::messages::decode<planemap::plane_map_t>(message.bytes)));
         ++heard;
     });
     while (wanted == 0 || heard < wanted) bus.handle(1000);

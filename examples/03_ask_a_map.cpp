@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Asks a stored map: the plane nearest to a point, what a ray meets, and how two planes lie to each other.
-//   03_ask_a_map plane_map.lcmlog [X Y Z]     a point of the world frame (metres); default: 1 m before the first camera
+//   03_ask_a_map plane_map.lcmlog [X Y Z]     a point of the world frame (metres); default: 1 m before the
+//   first camera
 #include <cstdio>
 #include <cstdlib>
 #include <exception>

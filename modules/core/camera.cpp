@@ -46,41 +46,19 @@ void check(const PinholeCamera& camera, const std::string& name, FieldErrors& er
         range_text(Limits::kLeastAspect, Limits::kMostAspect, ""));
 }
 
-/// The depth range, and that 16 bits reach into it.
-void check_depth(const CameraInfo& camera, FieldErrors& errors) {
+/// That 16 bits reach into the depth range.
+void check_units(const CameraInfo& camera, FieldErrors& errors) {
     using Limits = CameraLimits;
     const double units = camera.depth_units_per_metre;
     const bool units_good = units >= Limits::kLeastUnits && units <= Limits::kMostUnits;
     errors.require(units_good, "depth_units_per_metre", units,
                    range_text(Limits::kLeastUnits, Limits::kMostUnits, ""));
-    errors.require(camera.depth_min_m >= 0, "depth_min_m", camera.depth_min_m, "at least 0");
-    errors.require(std::isfinite(camera.depth_max_m) && camera.depth_max_m > camera.depth_min_m,
-                   "depth_max_m", camera.depth_max_m, "finite and greater than depth_min_m");
     const double farthest = 65535 / units;
     if (units_good && camera.depth_min_m >= 0 && std::isfinite(camera.depth_min_m)) {
         errors.require(farthest > camera.depth_min_m, "depth_units_per_metre", units,
                        "such that 16 bits reach beyond depth_min_m, " + number_text(camera.depth_min_m) +
                            " m: they end at " + number_text(farthest) + " m");
     }
-}
-
-void check_noise(const CameraInfo& camera, FieldErrors& errors) {
-    const DepthNoise& noise = camera.noise;
-    const bool good[] = {std::isfinite(noise.base_m) && noise.base_m >= 0,
-                         std::isfinite(noise.quadratic_per_m) && noise.quadratic_per_m >= 0,
-                         std::isfinite(noise.offset_m)};
-    errors.require(good[0], "noise.base_m", noise.base_m, "at least 0");
-    errors.require(good[1], "noise.quadratic_per_m", noise.quadratic_per_m, "at least 0");
-    errors.require(good[2], "noise.offset_m", noise.offset_m, "finite");
-    const double nearest = camera.depth_min_m, farthest = camera.depth_max_m;
-    if (!(good[0] && good[1] && good[2] && nearest < farthest && std::isfinite(farthest))) return;
-    const double quietest = std::clamp(noise.offset_m, nearest, farthest);
-    errors.require(noise.sigma(quietest) >= CameraLimits::kLeastSigma_m,
-                   "noise at " + number_text(quietest) + " m", noise.sigma(quietest),
-                   "at least " + number_text(CameraLimits::kLeastSigma_m) + " m (base_m, quadratic_per_m)");
-    const double loudest = std::max(noise.sigma(nearest), noise.sigma(farthest));
-    errors.require(loudest <= farthest, "noise within the depth range", loudest,
-                   "at most its far end, " + number_text(farthest) + " m");
 }
 
 /// Registration is for images of comparable resolution: beyond, a pixel of one camera is a blot on the
@@ -97,6 +75,26 @@ void check_ratio(double depth, double color, const std::string& field, FieldErro
 
 }  // namespace
 
+void check_depth(const DepthNoise& noise, double min_m, double max_m, FieldErrors& errors) {
+    errors.require(min_m >= 0, "depth_min_m", min_m, "at least 0");
+    errors.require(std::isfinite(max_m) && max_m > min_m, "depth_max_m", max_m,
+                   "finite and greater than depth_min_m");
+    const bool good[] = {std::isfinite(noise.base_m) && noise.base_m >= 0,
+                         std::isfinite(noise.quadratic_per_m) && noise.quadratic_per_m >= 0,
+                         std::isfinite(noise.offset_m)};
+    errors.require(good[0], "noise.base_m", noise.base_m, "at least 0");
+    errors.require(good[1], "noise.quadratic_per_m", noise.quadratic_per_m, "at least 0");
+    errors.require(good[2], "noise.offset_m", noise.offset_m, "finite");
+    if (!(good[0] && good[1] && good[2] && min_m < max_m && std::isfinite(max_m))) return;
+    const double quietest = std::clamp(noise.offset_m, min_m, max_m);
+    errors.require(noise.sigma(quietest) >= CameraLimits::kLeastSigma_m,
+                   "noise at " + number_text(quietest) + " m", noise.sigma(quietest),
+                   "at least " + number_text(CameraLimits::kLeastSigma_m) + " m (base_m, quadratic_per_m)");
+    const double loudest = std::max(noise.sigma(min_m), noise.sigma(max_m));
+    errors.require(loudest <= max_m, "noise within the depth range", loudest,
+                   "at most its far end, " + number_text(max_m) + " m");
+}
+
 void CameraInfo::validate() const {
     FieldErrors errors("camera info");
     if (serial.size() > 64)
@@ -107,8 +105,8 @@ void CameraInfo::validate() const {
     check_ratio(depth.fy, color.fy, "fy", errors);
     errors.require(is_valid(color_from_depth), "color_from_depth", "not a rigid transform",
                    "a rigid transform");
-    check_depth(*this, errors);
-    check_noise(*this, errors);
+    check_units(*this, errors);
+    check_depth(noise, depth_min_m, depth_max_m, errors);
     errors.throw_if_any();
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/pose.hpp"
+#include "core/validation.hpp"
 
 namespace planemap {
 
@@ -50,6 +51,11 @@ struct DepthNoise {
     double sigma(double z) const { return base_m + quadratic_per_m * (z - offset_m) * (z - offset_m); }
     friend bool operator==(const DepthNoise&, const DepthNoise&) = default;
 };
+
+/// Adds each field that no sensor's depth has, named as in CameraInfo: a range that is not finite, negative
+/// or empty; noise that is not finite, negative, below CameraLimits::kLeastSigma_m everywhere in the range,
+/// or beyond it.
+void check_depth(const DepthNoise& noise, double min_m, double max_m, FieldErrors& errors);
 
 /// What an RGB-D sensor is: the project's "camera frame" is the optical frame of `color`. A sensor without
 /// colour has color equal to depth.

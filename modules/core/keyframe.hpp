@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/camera.hpp"
 #include "core/pose.hpp"
 #include "core/region.hpp"
 
@@ -55,6 +56,8 @@ struct Keyframe {
     Matrix6d covariance = Matrix6d::Zero();        ///< of the edge: translation, rotation; camera frame
     std::vector<Feature> features;
     std::vector<PlanarRegion> regions;  ///< camera frame
+    DepthNoise noise;                   ///< of the sensor that saw it: what its features and regions weigh
+    double depth_min_m = 0.3, depth_max_m = 8.0;  ///< range of that sensor
 };
 
 /// Pose of one keyframe after graph optimisation.

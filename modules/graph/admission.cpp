@@ -46,6 +46,7 @@ void check(const Keyframe& keyframe, std::optional<int> last_id) {
         errors.require(feature.region >= -1 && feature.region < regions, name + ".region", feature.region,
                        "-1 or an index into regions");
     }
+    check_depth(keyframe.noise, keyframe.depth_min_m, keyframe.depth_max_m, errors);
     for (std::size_t i = 0; i < keyframe.regions.size() && !errors.any(); ++i) {
         errors.require(is_valid(keyframe.regions[i]), "regions[" + std::to_string(i) + "]", "not valid",
                        "finite, with a unit normal and at least three points");

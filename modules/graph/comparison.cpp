@@ -42,7 +42,7 @@ double ray_cast(const KeyframeView& view, const Eigen::Vector3d& p) {
 
 /// Where samples of b's regions lie with respect to the surfaces that a saw.
 PlaneAgreement compare_one_way(const KeyframeView& a, const KeyframeView& b, const Pose& a_from_b,
-                               const DepthNoise& noise, double slack_m) {
+                               double slack_m) {
     PlaneAgreement agreement;
     for (const PlanarRegion& region : b.regions) {
         for (const Eigen::Vector3d& sample : samples_of(region)) {
@@ -50,7 +50,8 @@ PlaneAgreement compare_one_way(const KeyframeView& a, const KeyframeView& b, con
             if (!a.sees(p)) continue;
             const double behind = (ray_cast(a, p) - 1) * p.z();
             if (!std::isfinite(behind)) continue;
-            const double margin = kPlaneDistance + slack_m + 3 * noise.sigma(p.z() + std::max(0.0, behind));
+            const double margin =
+                kPlaneDistance + slack_m + 3 * worst_sigma(a, b, p.z() + std::max(0.0, behind));
             if (behind > 2 * margin) ++agreement.contradict;
             if (std::abs(behind) < margin) ++agreement.agree;
         }
@@ -60,10 +61,14 @@ PlaneAgreement compare_one_way(const KeyframeView& a, const KeyframeView& b, con
 
 }  // namespace
 
+double worst_sigma(const KeyframeView& a, const KeyframeView& b, double z) {
+    return std::max(a.noise.sigma(z), b.noise.sigma(z));
+}
+
 PlaneAgreement compare_planes(const KeyframeView& a, const KeyframeView& b, const Pose& a_from_b,
-                              const DepthNoise& noise, double slack_m) {
-    const PlaneAgreement of_b = compare_one_way(a, b, a_from_b, noise, slack_m);
-    const PlaneAgreement of_a = compare_one_way(b, a, a_from_b.inverse(Eigen::Isometry), noise, slack_m);
+                              double slack_m) {
+    const PlaneAgreement of_b = compare_one_way(a, b, a_from_b, slack_m);
+    const PlaneAgreement of_a = compare_one_way(b, a, a_from_b.inverse(Eigen::Isometry), slack_m);
     return {of_a.agree + of_b.agree, of_a.contradict + of_b.contradict};
 }
 
@@ -82,7 +87,7 @@ std::vector<Match> match_at(const KeyframeView& a, const KeyframeView& b, const 
         const Eigen::Vector3d p = a_from_b * b.points[j];
         if (!a.sees(p)) continue;
         const double reach =
-            slack_m + kInlierSigmas * (options.noise.sigma(p.z()) + options.bearing_sigma * p.norm());
+            slack_m + kInlierSigmas * (worst_sigma(a, b, p.z()) + options.bearing_sigma * p.norm());
         Match best;
         int best_distance = options.matching.max_distance + 1;
         for (std::size_t i = 0; i < a.points.size(); ++i) {

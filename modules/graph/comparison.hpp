@@ -13,13 +13,16 @@ constexpr double kInlierSigmas = 3.5;    ///< of two points' distance, when they
 constexpr double kPlaneDistance = 0.05;  ///< metres between planes that are one, as the map merges them
                                          ///< (paper section 2.3)
 
+/// Standard deviation of depth at z in the noisier of both views.
+double worst_sigma(const KeyframeView& a, const KeyframeView& b, double z);
+
 /// Numbers of sample points of the regions of both views that agree with a surface of the other view, and
 /// that lie clearly before one (the other view saw through them), if the pose errs by at most slack_m.
 struct PlaneAgreement {
     int agree = 0, contradict = 0;
 };
 PlaneAgreement compare_planes(const KeyframeView& a, const KeyframeView& b, const Pose& a_from_b,
-                              const DepthNoise& noise, double slack_m = 0);
+                              double slack_m = 0);
 
 /// Of the points of b that a should see, how many lie within slack_m and noise of one of a with a like
 /// descriptor.

@@ -61,7 +61,7 @@ class PoseGraph::Impl {
     void close_loops();
     void add_loop(int node, const graph::Verification& found);
     void carry_part(int node, const Pose& node_from_newest);
-    double sight(const std::vector<PlanarRegion>& regions);
+    double sight(const Keyframe& keyframe);
     void let_go(int node);
 
     GraphOptions options_;
@@ -84,7 +84,7 @@ void PoseGraph::Impl::extend(const Keyframe& keyframe) {
     if (is_first_a_stray) start_anew();
     append(keyframe);
     close_loops();
-    const double disagreement = sight(keyframe.regions);
+    const double disagreement = sight(keyframe);
     schedule_.keyframe_added({keyframes_.size(), disagreement, topology_.has_new_loops(),
                               topology_.worst_new_loop(keyframes_.poses())});
 }
@@ -180,11 +180,11 @@ void PoseGraph::Impl::carry_part(int node, const Pose& node_from_newest) {
 
 /// Notes which landmarks the newest keyframe sees, and returns how far they disagree (standard deviations); 0
 /// while it is not tied to the first keyframe, since its pose says nothing then.
-double PoseGraph::Impl::sight(const std::vector<PlanarRegion>& regions) {
+double PoseGraph::Impl::sight(const Keyframe& keyframe) {
     UnionFind<int> parts = topology_.parts();
     const int newest = keyframes_.newest();
     if (parts.find(newest) != parts.find(0)) return 0;
-    return landmarks_.add(newest, regions, keyframes_.pose(newest));
+    return landmarks_.add(newest, keyframe.regions, keyframes_.pose(newest), keyframe.noise);
 }
 
 std::unique_ptr<graph::OptimisationTask> PoseGraph::Impl::prepare() {

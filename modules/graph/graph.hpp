@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/keyframe.hpp"
-#include "graph/graph_options.hpp"
 #include "graph/loop_closure.hpp"
+#include "graph/options.hpp"
 
 namespace planemap {
 

@@ -28,7 +28,7 @@ GraphShell::GraphShell(Bus& bus, const GraphOptions& options, Optimising optimis
 void GraphShell::on_keyframe(const RawMessage& message) {
     const keyframe_t received = decode<keyframe_t>(message.bytes);
     const Keyframe keyframe = from_message(received);
-    if (!keyframe_guard_.admits(received.seq, received.utime, message.bytes)) return;
+    if (!keyframe_guard_.admits(received.session, received.seq, received.utime, message.bytes)) return;
     if (odometry_started_again_ || !graph_.expects(keyframe.id)) {
         refuse(keyframe.id);
         // Of two, nobody knows which is the stray: the graph goes on with the second.
@@ -111,14 +111,14 @@ void GraphShell::tell_losses() {
 /// For those who come late while the camera stands still: the same message again, which is no work.
 void GraphShell::republish_if_due() {
     if (published_us_ == 0 || now_us() - published_us_ < kRepeat_us) return;
-    bus_.publish(channels::kTrajectory, to_message(graph_.trajectory(), seq_ - 1));
+    bus_.publish(channels::kTrajectory, to_message(graph_.trajectory(), seq_ - 1, bus_.session()));
     published_us_ = now_us();
 }
 
 void GraphShell::publish() {
     tell_losses();
     const KeyframeTrajectory& trajectory = graph_.trajectory();
-    bus_.publish(channels::kTrajectory, to_message(trajectory, seq_++));
+    bus_.publish(channels::kTrajectory, to_message(trajectory, seq_++, bus_.session()));
     published_us_ = now_us();
     status_.published();
     std::string text = std::to_string(trajectory.keyframes.size()) + " keyframes, " +

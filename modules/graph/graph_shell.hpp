@@ -53,7 +53,4 @@ class GraphShell : public Shell {
     bool odometry_started_again_ = false;
 };
 
-/// Flags for the options, each named --<prefix>NAME.
-void add_flags(Flags& flags, GraphOptions& options, const std::string& prefix = "");
-
 }  // namespace planemap

@@ -22,6 +22,7 @@ KeyframeView make_view(const Keyframe& keyframe, int max_features) {
         view.descriptors.push_back(feature.descriptor);
     }
     view.regions = keyframe.regions;
+    view.noise = keyframe.noise;
     return view;
 }
 

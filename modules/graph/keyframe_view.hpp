@@ -13,6 +13,7 @@ struct KeyframeView {
     std::vector<Eigen::Vector3d> points;  ///< metres, z > 0
     std::vector<Descriptor> descriptors;  ///< one a point
     std::vector<PlanarRegion> regions;
+    DepthNoise noise;  ///< of the points along their rays, and of the regions
     Eigen::Vector2d low = Eigen::Vector2d::Zero(), high = Eigen::Vector2d::Zero();  ///< range of x/z and y/z
 
     /// True when the point lies in front of the camera within the range of directions of its features.

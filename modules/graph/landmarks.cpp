@@ -34,7 +34,6 @@ LandmarkOptions landmark_options(const GraphOptions& options) {
     out.max_distance_m = options.landmark_distance_m;
     out.max_gap_m = options.landmark_gap_m;
     out.sigma_m = options.landmark_sigma_m;
-    out.noise = options.noise;
     return out;
 }
 
@@ -55,7 +54,8 @@ bool Landmarks::fits(const Candidate& region, const Landmark& landmark) const {
            distance(region.box, landmark.box) < options_.max_gap_m;
 }
 
-double Landmarks::add(int node, const std::vector<PlanarRegion>& regions, const Pose& world_from_camera) {
+double Landmarks::add(int node, const std::vector<PlanarRegion>& regions, const Pose& world_from_camera,
+                      const DepthNoise& noise) {
     double worst = 0;
     for (const PlanarRegion& region : regions) {
         const PlaneFit fit = fit_plane(region.moments);
@@ -67,7 +67,7 @@ double Landmarks::add(int node, const std::vector<PlanarRegion>& regions, const 
         const Eigen::Vector3d v = std::sqrt(fit.variances[1]) * fit.axes.col(1);
         sighting.points_camera = {centre + u, centre + v, centre - u, centre - v};
         for (auto& p : sighting.points_camera) p = region.plane.project(p);
-        sighting.sqrt_weight = 1 / std::hypot(options_.sigma_m, options_.noise.sigma(centre.z()));
+        sighting.sqrt_weight = 1 / std::hypot(options_.sigma_m, noise.sigma(centre.z()));
 
         Candidate candidate{world_from_camera * region.plane, world_from_camera * region.box, {}};
         for (std::size_t i = 0; i < 4; ++i)

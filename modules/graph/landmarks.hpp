@@ -10,7 +10,7 @@
 #include "core/camera.hpp"
 #include "core/region.hpp"
 #include "core/union_find.hpp"
-#include "graph/graph_options.hpp"
+#include "graph/options.hpp"
 
 namespace planemap::graph {
 
@@ -36,7 +36,6 @@ struct LandmarkOptions {
     double max_distance_m = 0.06;  ///< RMS of the region's four points to its landmark
     double max_gap_m = 0.5;        ///< between their boxes
     double sigma_m = 0.01;         ///< of a point's distance, on top of the sensor's noise
-    DepthNoise noise;              ///< of the depth sensor
 };
 
 /// What the graph's options say of them.
@@ -47,10 +46,11 @@ class Landmarks {
   public:
     explicit Landmarks(const LandmarkOptions& options) : options_(options) {}
 
-    /// Takes the regions of a keyframe (camera frame) at its present pose: each large one is a sighting of
-    /// the landmark that it lies on, or founds one. A region that lies on several is left out. Returns the
-    /// largest whitened error of the new sightings.
-    double add(int node, const std::vector<PlanarRegion>& regions, const Pose& world_from_camera);
+    /// Takes the regions of a keyframe (camera frame), seen by a sensor of that noise, at its present pose:
+    /// each large one is a sighting of the landmark that it lies on, or founds one. A region that lies on
+    /// several is left out. Returns the largest whitened error of the new sightings.
+    double add(int node, const std::vector<PlanarRegion>& regions, const Pose& world_from_camera,
+               const DepthNoise& noise);
 
     /// Takes the planes of landmarks that an optimisation moved. Landmarks that it did not know yet move with
     /// the node that founded them: world_moves is how the world moved about each node.

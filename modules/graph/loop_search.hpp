@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "graph/graph_options.hpp"
 #include "graph/keyframes.hpp"
+#include "graph/options.hpp"
 #include "graph/place_index.hpp"
 #include "graph/topology.hpp"
 #include "graph/verification.hpp"

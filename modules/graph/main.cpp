@@ -4,7 +4,7 @@
 int main(int argc, char** argv) {
     planemap::Process process("graph", "Keyframes to loop closures and an optimised trajectory.");
     planemap::GraphOptions options;
-    add_flags(process.flags(), options);
+    process.flags().add(options_of(options));
     return process.run(argc, argv, [&](planemap::Bus& bus) {
         return std::make_unique<planemap::GraphShell>(bus, options, planemap::Optimising::kInBackground);
     });

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "core/trajectory.hpp"
-#include "graph/graph_options.hpp"
 #include "graph/keyframes.hpp"
+#include "graph/options.hpp"
 
 namespace planemap::graph {
 

@@ -62,7 +62,7 @@ bool Redundancy::is_alike(int a, int b, const Keyframes& keyframes) const {
     const bool is_bare = view_a.points.size() < kFewPoints && view_b.points.size() < kFewPoints;
     if (!is_bare && points.agree < std::max<double>(kFewPoints, options_.min_alike_ratio * points.visible))
         return false;
-    const PlaneAgreement planes = compare_planes(view_a, view_b, a_from_b, options_.noise, kSlack_m);
+    const PlaneAgreement planes = compare_planes(view_a, view_b, a_from_b, kSlack_m);
     if (is_bare && planes.agree == 0) return false;
     return planes.contradict <= options_.max_contradiction * (planes.agree + planes.contradict);
 }

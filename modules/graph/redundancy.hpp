@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "graph/graph_options.hpp"
 #include "graph/keyframes.hpp"
+#include "graph/options.hpp"
 #include "graph/topology.hpp"
 
 namespace planemap::graph {

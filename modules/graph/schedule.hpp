@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "graph/graph_options.hpp"
+#include "graph/options.hpp"
 
 namespace planemap::graph {
 

@@ -60,7 +60,7 @@ Likeness compare(const PlacedView& a, const PlacedView& b, const VerificationOpt
     constexpr double kAlikeShare = 0.08, kUnlikeShare = 0.02;
     const Pose a_from_b = a.world_from_camera.inverse(Eigen::Isometry) * b.world_from_camera;
     const double slack_m = std::max(kMinSlack, (a.drift_m + b.drift_m) / 2);
-    const PlaneAgreement planes = compare_planes(*a.view, *b.view, a_from_b, options.noise, slack_m);
+    const PlaneAgreement planes = compare_planes(*a.view, *b.view, a_from_b, slack_m);
     const int samples = planes.agree + planes.contradict;
     if (samples >= kMinSamples && planes.contradict > options.max_contradiction * samples)
         return Likeness::kUnlike;

@@ -6,8 +6,8 @@
 #include <limits>
 #include <vector>
 
-#include "graph/graph_options.hpp"
 #include "graph/optimisation.hpp"
+#include "graph/options.hpp"
 
 namespace planemap::graph {
 

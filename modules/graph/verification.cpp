@@ -28,20 +28,25 @@ struct PointPair {
 };
 
 /// Uncertainty of a point: depth noise along its ray, pixel noise across it.
-Eigen::Matrix3d point_covariance(const Eigen::Vector3d& p, const VerificationOptions& options) {
+Eigen::Matrix3d point_covariance(const Eigen::Vector3d& p, const DepthNoise& noise,
+                                 const VerificationOptions& options) {
     const Eigen::Vector3d ray = p.normalized();
-    const double along = options.noise.sigma(p.z()), across = options.bearing_sigma * p.norm();
+    const double along = noise.sigma(p.z()), across = options.bearing_sigma * p.norm();
     return across * across * Eigen::Matrix3d::Identity() +
            std::max(0.0, along * along - across * across) * ray * ray.transpose();
 }
 
-PointPair make_pair(const Eigen::Vector3d& p_a, const Eigen::Vector3d& p_b,
+/// The points of a match.
+PointPair make_pair(const KeyframeView& a, const KeyframeView& b, const Match& match,
                     const VerificationOptions& options) {
-    const auto worst = [&](const Eigen::Vector3d& p) {
-        return std::max(options.noise.sigma(p.z()), options.bearing_sigma * p.norm());
+    const Eigen::Vector3d &p_a = a.points[static_cast<std::size_t>(match.first)],
+                          &p_b = b.points[static_cast<std::size_t>(match.second)];
+    const auto worst = [&](const Eigen::Vector3d& p, const DepthNoise& noise) {
+        return std::max(noise.sigma(p.z()), options.bearing_sigma * p.norm());
     };
-    return {p_a, p_b, point_covariance(p_a, options), point_covariance(p_b, options),
-            worst(p_a) * worst(p_a) + worst(p_b) * worst(p_b)};
+    const double worst_a = worst(p_a, a.noise), worst_b = worst(p_b, b.noise);
+    return {p_a, p_b, point_covariance(p_a, a.noise, options), point_covariance(p_b, b.noise, options),
+            worst_a * worst_a + worst_b * worst_b};
 }
 
 /// Information of the difference of a pair in frame a.
@@ -83,11 +88,12 @@ Pose align_three(const std::array<const PointPair*, 3>& sample) {
 }
 
 /// True when the triangle has about the same sides in both views and they are long enough to tell a rotation.
-bool is_sound_sample(const std::array<const PointPair*, 3>& sample, const VerificationOptions& options) {
+bool is_sound_sample(const std::array<const PointPair*, 3>& sample, const KeyframeView& a,
+                     const KeyframeView& b) {
     for (std::size_t i = 0; i < 3; ++i) {
         const PointPair &p = *sample[i], &q = *sample[(i + 1) % 3];
         const double length_a = (p.p_a - q.p_a).norm(), length_b = (p.p_b - q.p_b).norm();
-        const double noise = options.noise.sigma(std::max({p.p_a.z(), q.p_a.z(), p.p_b.z(), q.p_b.z()}));
+        const double noise = worst_sigma(a, b, std::max({p.p_a.z(), q.p_a.z(), p.p_b.z(), q.p_b.z()}));
         if (std::min(length_a, length_b) < 0.1 || std::abs(length_a - length_b) > 0.02 + 4 * noise)
             return false;
     }
@@ -99,8 +105,8 @@ struct Consensus {
     int inliers = 0;  ///< by count_near()
 };
 
-Consensus ransac(const std::vector<PointPair>& pairs, const VerificationOptions& options,
-                 std::uint64_t seed) {
+Consensus ransac(const KeyframeView& a, const KeyframeView& b, const std::vector<PointPair>& pairs,
+                 const VerificationOptions& options, std::uint64_t seed) {
     Consensus best;
     std::mt19937_64 engine(seed);
     std::uniform_int_distribution<std::size_t> pick(0, pairs.size() - 1);
@@ -109,7 +115,7 @@ Consensus ransac(const std::vector<PointPair>& pairs, const VerificationOptions&
     for (int tries = 0, i = 0; i < needed && tries < 20 * options.max_ransac_iterations; ++tries) {
         const std::array<const PointPair*, 3> sample{&pairs[pick(engine)], &pairs[pick(engine)],
                                                      &pairs[pick(engine)]};
-        if (!is_sound_sample(sample, options)) continue;
+        if (!is_sound_sample(sample, a, b)) continue;
         ++i;
         const Pose a_from_b = align_three(sample);
         const int inliers = count_near(pairs, a_from_b);
@@ -177,8 +183,8 @@ std::vector<PlanePair> pair_planes(const KeyframeView& a, const KeyframeView& b,
 
 /// The centre of b's region lies on a's plane, and the normals agree. What a's plane says far from its own
 /// region counts less.
-void add_planes(const std::vector<PlanePair>& pairs, const Pose& a_from_b, const DepthNoise& noise,
-                NormalEquations& equations) {
+void add_planes(const KeyframeView& a, const KeyframeView& b, const std::vector<PlanePair>& pairs,
+                const Pose& a_from_b, NormalEquations& equations) {
     constexpr double kNormalSigma = 0.01;  // radians: what a sensor's distortion leaves
     const Eigen::Matrix3d r = a_from_b.linear();
     for (const PlanePair& pair : pairs) {
@@ -187,7 +193,7 @@ void add_planes(const std::vector<PlanePair>& pairs, const Pose& a_from_b, const
         const Eigen::Vector3d centre = a_from_b * centre_b;
         const double reach = (centre - pair.a->box.frame_from_box.translation()).norm();
         const double sigma = 0.003 +
-                             0.5 * noise.sigma(std::max(std::abs(centre.z()), std::abs(centre_b.z()))) +
+                             0.5 * worst_sigma(a, b, std::max(std::abs(centre.z()), std::abs(centre_b.z()))) +
                              kNormalSigma * reach;
         const Eigen::Vector3d u = plane_a.normal.unitOrthogonal(), v = plane_a.normal.cross(u);
         Eigen::Matrix<double, 2, 3> across;
@@ -211,13 +217,13 @@ struct Refined {
 };
 
 Refined refine(const KeyframeView& a, const KeyframeView& b, const std::vector<PointPair>& pairs,
-               Pose a_from_b, const VerificationOptions& options) {
+               Pose a_from_b) {
     Refined refined;
     for (int i = 0; i < 10; ++i) {
         const std::vector<PlanePair> planes = pair_planes(a, b, a_from_b);
         NormalEquations equations;
         add_points(pairs, a_from_b, equations);
-        add_planes(planes, a_from_b, options.noise, equations);
+        add_planes(a, b, planes, a_from_b, equations);
         const Eigen::LDLT<Matrix6d> solver(equations.information);
         const Twist step = solver.solve(-equations.gradient);
         refined.determined = solver.info() == Eigen::Success && solver.isPositive() && step.allFinite();
@@ -236,10 +242,7 @@ std::vector<PointPair> make_pairs(const KeyframeView& a, const KeyframeView& b,
                                   const std::vector<Match>& matches, const VerificationOptions& options) {
     std::vector<PointPair> pairs;
     pairs.reserve(matches.size());
-    for (const Match& match : matches) {
-        pairs.push_back(make_pair(a.points[static_cast<std::size_t>(match.first)],
-                                  b.points[static_cast<std::size_t>(match.second)], options));
-    }
+    for (const Match& match : matches) pairs.push_back(make_pair(a, b, match, options));
     return pairs;
 }
 
@@ -256,15 +259,15 @@ int occupied_cells(const KeyframeView& view, const std::vector<Eigen::Vector3d>&
     return static_cast<int>(cells.count());
 }
 
-double worst_sigma(const Eigen::Matrix3d& covariance) {
+double largest_sigma(const Eigen::Matrix3d& covariance) {
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance, Eigen::EigenvaluesOnly);
     return std::sqrt(std::max(0.0, solver.eigenvalues()[2]));
 }
 
 bool spread_suffices(const KeyframeView& a, const KeyframeView& b, const std::vector<PointPair>& inliers,
                      const Refined& refined, const VerificationOptions& options) {
-    if (worst_sigma(refined.covariance.topLeftCorner<3, 3>()) > options.max_sigma_m) return false;
-    if (worst_sigma(refined.covariance.bottomRightCorner<3, 3>()) > options.max_sigma_rad) return false;
+    if (largest_sigma(refined.covariance.topLeftCorner<3, 3>()) > options.max_sigma_m) return false;
+    if (largest_sigma(refined.covariance.bottomRightCorner<3, 3>()) > options.max_sigma_rad) return false;
     std::vector<Eigen::Vector3d> in_a, in_b;
     for (const PointPair& pair : inliers) {
         in_a.push_back(pair.p_a);
@@ -292,17 +295,17 @@ Verification verify(const KeyframeView& a, const KeyframeView& b, const Verifica
     if (result.matches < std::max(3, options.min_inliers)) return result;
 
     result.verdict = Verdict::kFewInliers;
-    const Consensus consensus = ransac(pairs, options, seed);
+    const Consensus consensus = ransac(a, b, pairs, options, seed);
     const int needed =
         std::max(options.min_inliers, static_cast<int>(options.min_inlier_ratio * result.matches));
     if (2 * consensus.inliers < needed) return result;  // refinement may double them, not more
-    Refined refined = refine(a, b, pairs, consensus.a_from_b, options);
+    Refined refined = refine(a, b, pairs, consensus.a_from_b);
     if (!refined.determined) return result;
     result.inliers = count_inliers(pairs, refined.a_from_b);
     if (result.inliers < needed) return result;
 
     std::vector<PointPair> more = make_pairs(a, b, match_at(a, b, refined.a_from_b, options), options);
-    refined = refine(a, b, more, refined.a_from_b, options);
+    refined = refine(a, b, more, refined.a_from_b);
     if (!refined.determined) return result;
     std::erase_if(more, [&](const PointPair& pair) {
         return squared_sigmas(pair, refined.a_from_b) >= kInlierSigmas * kInlierSigmas;
@@ -317,7 +320,7 @@ Verification verify(const KeyframeView& a, const KeyframeView& b, const Verifica
     result.verdict = Verdict::kBadSpread;
     if (!spread_suffices(a, b, more, refined, options)) return result;
     result.verdict = Verdict::kContradiction;
-    const PlaneAgreement planes = compare_planes(a, b, result.a_from_b, options.noise);
+    const PlaneAgreement planes = compare_planes(a, b, result.a_from_b);
     if (planes.contradict > options.max_contradiction * (planes.agree + planes.contradict)) return result;
     result.verdict = Verdict::kAccepted;
     return result;

@@ -6,7 +6,6 @@ namespace planemap::graph {
 VerificationOptions verification_options(const GraphOptions& options) {
     VerificationOptions out;
     out.matching = {options.max_descriptor_distance, options.matching_ratio};
-    out.noise = options.noise;
     out.bearing_sigma = options.bearing_sigma;
     out.min_inliers = options.min_inliers;
     out.min_inlier_ratio = options.min_inlier_ratio;

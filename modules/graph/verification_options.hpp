@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "core/camera.hpp"
-#include "graph/graph_options.hpp"
 #include "graph/matching.hpp"
+#include "graph/options.hpp"
 
 namespace planemap::graph {
 
 /// When two views show the same.
 struct VerificationOptions {
     MatchingOptions matching;
-    DepthNoise noise;              ///< of the points along their rays
     double bearing_sigma = 0.003;  ///< of the points across their rays, radians
     int max_ransac_iterations = 300;
     int min_inliers = 25;             ///< matched points that agree with the pose

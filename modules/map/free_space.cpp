@@ -116,7 +116,7 @@ void FreeSpace::carve(PlaneEstimate& plane, const Viewpoint& viewpoint, const Fo
         const Plane& beyond = viewpoint.planes[region];
         // Depth of that region along the ray through the point.
         const double depth = -beyond.d / beyond.normal.dot(p) * p.z();
-        if (depth > p.z() + margin_m_ + 2 * noise_.sigma(depth))
+        if (depth > p.z() + margin_m_ + 2 * viewpoint.keyframe->noise.sigma(depth))
             lost += plane.grid.add_misses(block, kMissStrength);
     }
     plane.changed_cells += lost;

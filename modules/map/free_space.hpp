@@ -26,7 +26,7 @@ class FreeSpace {
   public:
     /// A region beyond a cell by more than margin_m and two sigma of the sensor's noise is a miss of the
     /// cell.
-    FreeSpace(const DepthNoise& noise, double margin_m) : noise_(noise), margin_m_(margin_m) {}
+    explicit FreeSpace(double margin_m) : margin_m_(margin_m) {}
 
     /// Carves what one keyframe sees past.
     void carve(std::vector<PlaneEstimate>& planes, const Viewpoint& viewpoint) const;
@@ -45,7 +45,6 @@ class FreeSpace {
     void carve(PlaneEstimate& plane, const Viewpoint& viewpoint, const Footprint& footprint,
                const std::vector<EvidenceGrid::Block>& uncertain) const;
 
-    DepthNoise noise_;
     double margin_m_;
 };
 

@@ -83,7 +83,8 @@ KeyframeStore::Arrival KeyframeStore::add(const Keyframe& keyframe, MapLosses& l
         return Arrival::kRefused;
     }
     newest_id_ = std::max(newest_id_, keyframe.id);
-    keyframes_[keyframe.id] = stored(keyframe.utime, usable_regions(keyframe, losses));
+    StoredKeyframe& kept = keyframes_[keyframe.id] = stored(keyframe.utime, usable_regions(keyframe, losses));
+    kept.noise = keyframe.noise;
     return is_known ? Arrival::kAgain : Arrival::kNew;
 }
 

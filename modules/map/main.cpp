@@ -10,7 +10,7 @@ int main(int argc, char** argv) {
         "map", options.start,
         "plane_map.lcmlog to start from, in the world frame of this run: its planes keep their ids "
         "and grow on");
-    add_flags(process.flags(), options.map);
+    process.flags().add(options_of(options.map));
     return process.run(argc, argv, [&](planemap::Bus& bus) {
         return std::make_unique<planemap::map::MapShell>(bus, options);
     });

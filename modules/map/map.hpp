@@ -10,7 +10,7 @@
 #include "map/derived_map.hpp"
 #include "map/keyframe_store.hpp"
 #include "map/map_losses.hpp"
-#include "map/map_options.hpp"
+#include "map/options.hpp"
 #include "map/planes.hpp"
 
 namespace planemap::map {

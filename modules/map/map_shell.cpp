@@ -55,7 +55,7 @@ MapShell::MapShell(Bus& bus, const MapShellOptions& options)
 void MapShell::on_keyframe(const RawMessage& message) {
     const keyframe_t received = decode<keyframe_t>(message.bytes);
     const Keyframe keyframe = from_message(received);
-    if (!keyframe_guard_.admits(received.seq, received.utime, message.bytes)) return;
+    if (!keyframe_guard_.admits(received.session, received.seq, received.utime, message.bytes)) return;
     watch_.came(keyframe.id, keyframe.previous_id, keyframe.utime);
     mapper_.add(keyframe);
     tell_losses();
@@ -65,7 +65,7 @@ void MapShell::on_keyframe(const RawMessage& message) {
 void MapShell::on_trajectory(const RawMessage& message) {
     const trajectory_t received = decode<trajectory_t>(message.bytes);
     const KeyframeTrajectory trajectory = from_message(received);
-    if (!trajectory_guard_.admits(received.seq, std::nullopt, message.bytes)) return;
+    if (!trajectory_guard_.admits(received.session, received.seq, std::nullopt, message.bytes)) return;
     {
         const ModuleStatus::Work work(status_);
         mapper_.update(trajectory);

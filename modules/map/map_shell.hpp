@@ -65,7 +65,4 @@ class MapShell : public Shell {
     bool is_ours_ = false;  ///< the file is this process's, or what was there is kept
 };
 
-/// Flags for the options, each named --<prefix>NAME.
-void add_flags(Flags& flags, MapOptions& options, const std::string& prefix = "");
-
 }  // namespace planemap::map

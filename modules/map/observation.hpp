@@ -23,18 +23,18 @@ struct Observation {
     bool is_near() const { return is_near_origin(placed.box.frame_from_box.translation()); }
 };
 
-/// What an observation counts for, by the sensor's noise at its depth and the error of poses.
+/// What an observation counts for, by the noise at its depth of the sensor that saw it and the error of
+/// poses.
 struct ObservationModel {
-    DepthNoise noise;
     double pose_sigma_m = 0.02;  ///< below it, less sensor noise gains no weight
     double agreement_m = 0.01;   ///< an observation off its plane by much more (and the noise) loses weight
 
     /// Inverse variance of a region about its plane, relative to a noise-free sensor: 0 to 1.
-    double weight(const StoredRegion& region_camera) const;
-    Reliability reliability(const StoredRegion& region_camera) const;
+    double weight(const StoredRegion& region_camera, const DepthNoise& noise) const;
+    Reliability reliability(const StoredRegion& region_camera, const DepthNoise& noise) const;
     /// 2^strength hits are what it counts for in the shape, see EvidenceGrid: 2 for a near one, 0 for a far
     /// one.
-    int strength(const StoredRegion& region_camera) const;
+    int strength(const StoredRegion& region_camera, const DepthNoise& noise) const;
 };
 
 }  // namespace planemap::map

@@ -21,8 +21,8 @@ MergeRules merge_rules(const MapOptions& options) {
 
 Planes::Planes(const MapOptions& options)
     : threads_(options.threads),
-      joiner_({options.noise, options.pose_sigma_m, options.agreement_m}, options.outline_cell_m),
-      free_space_(options.noise, options.see_through_m),
+      joiner_({options.pose_sigma_m, options.agreement_m}, options.outline_cell_m),
+      free_space_(options.see_through_m),
       planes_(merge_rules(options), options.max_extent_m),
       folded_(merge_rules(options), options.max_extent_m) {}
 

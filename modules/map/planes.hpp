@@ -8,7 +8,7 @@
 #include "map/free_space.hpp"
 #include "map/keyframe_store.hpp"
 #include "map/map_losses.hpp"
-#include "map/map_options.hpp"
+#include "map/options.hpp"
 #include "map/plane_ids.hpp"
 #include "map/plane_set.hpp"
 #include "map/region_joiner.hpp"

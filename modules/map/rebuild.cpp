@@ -18,7 +18,7 @@ Rebuild::Rebuild(KeyframeStore& store, FoldedPlanes& folded, PlaneIds& ids, cons
         if (!keyframe.world_from_camera) continue;
         for (std::size_t i = 0; i < keyframe.regions.size(); ++i) {
             StoredRegion& region = keyframe.regions[i];
-            weights.push_back(model.weight(region) * static_cast<double>(region.count));
+            weights.push_back(model.weight(region, keyframe.noise) * static_cast<double>(region.count));
             entries_.push_back({id, i, &keyframe, region.plane});
             region.plane = -1;
         }

@@ -6,7 +6,7 @@
 namespace planemap::map {
 
 std::size_t RegionJoiner::join(PlaneSet& planes, std::size_t at, int new_id, const Observation& seen) {
-    const Reliability reliability = model_.reliability(seen.region);
+    const Reliability reliability = model_.reliability(seen.region, seen.keyframe.noise);
     if (at == PlaneSet::none()) {
         outline_in(Pose::Identity(), seen.region, seen.keyframe, polygon_);
         PlaneEstimate plane(seen.placed, polygon_, reliability);
@@ -31,7 +31,7 @@ int RegionJoiner::draw(PlaneEstimate& plane, const Pose& world_from_box, const S
     if (plane.grid.empty()) plane.grid = EvidenceGrid(plane.box.frame_from_box, cell_m_);
     outline_in(plane.grid.world_from_grid().inverse(Eigen::Isometry) * world_from_box, region, keyframe,
                polygon_);
-    return plane.grid.add(polygon_, model_.strength(region));
+    return plane.grid.add(polygon_, model_.strength(region, keyframe.noise));
 }
 
 }  // namespace planemap::map

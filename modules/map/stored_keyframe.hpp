@@ -41,6 +41,7 @@ struct StoredKeyframe {
     std::vector<StoredRegion> regions;      ///< by falling number of inliers
     std::vector<std::int16_t> vertices;     ///< of all regions: a ring's size, then its x, y, ring after ring
     Sight sight;                            ///< regions as indexed here
+    DepthNoise noise;                       ///< of the sensor
     std::optional<Pose> world_from_camera;  ///< the pose it is in the map with
 };
 

@@ -15,6 +15,7 @@
 #include <cstring>
 #include <ctime>
 #include <fstream>
+#include <random>
 #include <stdexcept>
 #include <thread>
 
@@ -139,7 +140,18 @@ std::string receive_buffer_advice(const std::string& url) {
            " bytes, frames may be lost: run `sysctl -w net.core.rmem_max=" + std::to_string(wanted) + "`";
 }
 
+namespace {
+
+std::int64_t random_session() {
+    std::random_device random;
+    const std::uint64_t bits = std::uint64_t{random()} << 32 | random();
+    return static_cast<std::int64_t>(bits >> 1 | 1);
+}
+
+}  // namespace
+
 Bus::Bus(const std::string& url) : endpoint_(completed(url)) {
+    if (!in_process()) session_ = random_session();
     if (!connect() && !endpoint_.is_network())
         throw std::runtime_error("LCM URL '" + this->url() + "': " + lost_reason_);
     const std::string advice = receive_buffer_advice(this->url());

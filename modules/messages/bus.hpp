@@ -46,6 +46,10 @@ class Bus {
     /// True for memq://, where nothing may be dropped.
     bool in_process() const { return endpoint_.in_process(); }
 
+    /// Tells what this process sends from what another one sends, or it itself before it started again: drawn
+    /// at random, not 0. In one process 0, so that the same input gives the same bytes.
+    std::int64_t session() const { return session_; }
+
     /// Sends a message. One that cannot be sent (no connection, too large) is counted in unsent().
     template <typename T>
     void publish(const std::string& channel, const T& message) {
@@ -101,6 +105,7 @@ class Bus {
     std::vector<std::unique_ptr<Subscriber>> subscribers_;
     std::vector<std::uint8_t> buffer_;
     Complaints complaints_;
+    std::int64_t session_ = 0;
     std::int64_t handler_errors_ = 0, unsent_ = 0;
     std::int64_t handled_ = 0, reported_ = 0;  ///< messages handled; the one that report() was last called in
     std::string reported_reason_;

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "core/stamp.hpp"
+#include "core/validation.hpp"
 #include "messages/image_codec.hpp"
 
 namespace planemap {
@@ -217,8 +218,9 @@ FrameRegions from_message(const planar_regions_t& message) {
     return {checked_utime(message.utime, "planar_regions.utime"), from_messages(message.regions)};
 }
 
-odometry_t to_message(const OdometryEstimate& estimate, std::int32_t seq) {
+odometry_t to_message(const OdometryEstimate& estimate, std::int32_t seq, std::int64_t session) {
     odometry_t message;
+    message.session = session;
     message.utime = estimate.utime;
     message.pose_utime = estimate.pose_utime;
     message.seq = seq;
@@ -259,8 +261,9 @@ bot_core::pose_t to_pose_message(const OdometryEstimate& estimate) {
     return message;
 }
 
-keyframe_t to_message(const Keyframe& keyframe, std::int32_t seq) {
+keyframe_t to_message(const Keyframe& keyframe, std::int32_t seq, std::int64_t session) {
     keyframe_t message;
+    message.session = session;
     message.utime = keyframe.utime;
     message.pose_utime = keyframe.pose_utime;
     message.seq = seq;
@@ -280,8 +283,30 @@ keyframe_t to_message(const Keyframe& keyframe, std::int32_t seq) {
     message.n_descriptor_bytes = count32(message.descriptors.size());
     message.regions = to_messages(keyframe.regions);
     message.n_regions = count32(message.regions.size());
+    message.noise_base_m = keyframe.noise.base_m;
+    message.noise_quadratic_per_m = keyframe.noise.quadratic_per_m;
+    message.noise_offset_m = keyframe.noise.offset_m;
+    message.depth_min_m = keyframe.depth_min_m;
+    message.depth_max_m = keyframe.depth_max_m;
     return message;
 }
+
+namespace {
+
+void read_depth(const keyframe_t& message, Keyframe& keyframe) {
+    keyframe.noise = {message.noise_base_m, message.noise_quadratic_per_m, message.noise_offset_m};
+    keyframe.depth_min_m = message.depth_min_m;
+    keyframe.depth_max_m = message.depth_max_m;
+    FieldErrors errors("keyframe");
+    check_depth(keyframe.noise, keyframe.depth_min_m, keyframe.depth_max_m, errors);
+    try {
+        errors.throw_if_any();
+    } catch (const std::invalid_argument& error) {
+        throw MessageError(error.what());
+    }
+}
+
+}  // namespace
 
 Keyframe from_message(const keyframe_t& message) {
     Keyframe keyframe;
@@ -297,6 +322,7 @@ Keyframe from_message(const keyframe_t& message) {
         from_message(message.previous_from_camera, "keyframe.previous_from_camera");
     keyframe.covariance = covariance_from(message.covariance, "keyframe.covariance");
     keyframe.regions = from_messages(message.regions);
+    read_depth(message, keyframe);
     constexpr std::size_t kBytes = std::tuple_size_v<Descriptor>;
     const auto features = static_cast<std::size_t>(message.n_features);
     require(message.descriptors.size() == features * kBytes, "keyframe.n_descriptor_bytes",
@@ -316,8 +342,9 @@ Keyframe from_message(const keyframe_t& message) {
     return keyframe;
 }
 
-trajectory_t to_message(const KeyframeTrajectory& trajectory, std::int32_t seq) {
+trajectory_t to_message(const KeyframeTrajectory& trajectory, std::int32_t seq, std::int64_t session) {
     trajectory_t message;
+    message.session = session;
     message.utime = trajectory.utime;
     message.seq = seq;
     message.revision = trajectory.revision;

@@ -37,15 +37,15 @@ struct FrameRegions {
 planar_regions_t to_message(const FrameRegions& regions, std::int32_t seq);
 FrameRegions from_message(const planar_regions_t& message);
 
-odometry_t to_message(const OdometryEstimate& estimate, std::int32_t seq);
+odometry_t to_message(const OdometryEstimate& estimate, std::int32_t seq, std::int64_t session = 0);
 OdometryEstimate from_message(const odometry_t& message);
 /// For viewers and robots that know bot_core only.
 bot_core::pose_t to_pose_message(const OdometryEstimate& estimate);
 
-keyframe_t to_message(const Keyframe& keyframe, std::int32_t seq);
+keyframe_t to_message(const Keyframe& keyframe, std::int32_t seq, std::int64_t session = 0);
 Keyframe from_message(const keyframe_t& message);
 
-trajectory_t to_message(const KeyframeTrajectory& trajectory, std::int32_t seq);
+trajectory_t to_message(const KeyframeTrajectory& trajectory, std::int32_t seq, std::int64_t session = 0);
 KeyframeTrajectory from_message(const trajectory_t& message);
 
 /// The map in 69 bytes a plane, 2 an outline ring and 4 an outline vertex: the very values that PlaneMap

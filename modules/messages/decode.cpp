@@ -126,7 +126,7 @@ void walk(Walker& w, const planar_regions_t*) {
     walk_regions(w);
 }
 void walk(Walker& w, const odometry_t*) {
-    w.skip(8 + 8 + 4 + 1 + kTransform + 4 + kTransform + 36 * 8 + 12, "odometry");
+    w.skip(8 + 8 + 4 + 1 + kTransform + 4 + kTransform + 36 * 8 + 12 + 8, "odometry");
 }
 void walk(Walker& w, const keyframe_t*) {
     w.skip(8 + 8 + 4 + 4 + kTransform + 4 + kTransform + 36 * 8, "keyframe");
@@ -136,10 +136,12 @@ void walk(Walker& w, const keyframe_t*) {
     w.array(features, 2, "regions_of");
     w.array(w.length("n_descriptor_bytes"), 1, "descriptors");
     walk_regions(w);
+    w.skip(5 * 8 + 8, "noise");
 }
 void walk(Walker& w, const trajectory_t*) {
     w.skip(8 + 4 + 4 + 4 + kTransform, "trajectory");
     w.array(w.length("n_keyframes"), 4 + 8 + kTransform, "keyframes");
+    w.skip(8, "session");
 }
 void walk(Walker& w, const plane_map_t*) {
     w.skip(8 + 4 + 4 + 4 * 3, "utime");

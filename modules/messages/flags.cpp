@@ -223,11 +223,11 @@ class Flags::Impl {
             ->configurable(false);
     }
 
-    /// "o,output" to "-o,--output", with the section's prefix.
-    std::string dashed(const std::string& name) const {
+    /// "o,output" to "-o,--output".
+    static std::string dashed(const std::string& name) {
         const auto comma = name.find(',');
-        if (comma == std::string::npos) return "--" + prefix + name;
-        return "-" + name.substr(0, comma) + ",--" + prefix + name.substr(comma + 1);
+        if (comma == std::string::npos) return "--" + name;
+        return "-" + name.substr(0, comma) + ",--" + name.substr(comma + 1);
     }
     template <typename T>
     CLI::Option* option(const std::string& name, T& field, const std::string& description) {
@@ -242,9 +242,54 @@ class Flags::Impl {
     }
     template <typename T>
     void finish(CLI::Option* option, const T& field) {
-        if (!heading.empty()) option->group(heading);
         last = option;
-        known.push_back({option, [&field] { return value_of(field); }});
+        known.push_back({option, [&field] { return value_of(field); }, "", false});
+    }
+
+    /// The flag of an option that is described in a list.
+    void add(const Option& described, const std::string& prefix, const std::string& heading) {
+        const std::string name = prefix + described.flag();
+        CLI::Option* const option = std::visit(
+            [&](auto* field) {
+                if constexpr (std::is_same_v<decltype(field), bool*>) {
+                    CLI::Option* const added = app.add_flag(dashed(name), *field, described.help);
+                    finish(added, *field);
+                    return added;
+                } else {
+                    return this->option(name, *field, help_of(described))->capture_default_str();
+                }
+            },
+            described.field);
+        if (!described.choices.empty()) option->check(CLI::IsMember(described.choices));
+        option->group(heading);
+        known.back().heading = heading;
+        known.back().expert = described.audience == Audience::kExpert;
+        if (known.back().expert) offer_all();
+    }
+
+    /// With what is allowed, and the unit: "largest gap [0 to 100 m]".
+    static std::string help_of(const Option& option) {
+        const std::string range = option.range_and_unit();
+        return range.empty() ? option.help : option.help + " [" + range + "]";
+    }
+
+    /// --help-all, for a program with options that --help does not show.
+    void offer_all() {
+        if (!app.get_footer().empty()) return;
+        app.footer("--help-all lists more options.");
+        const auto show = [this] {
+            help_all = true;
+            throw CLI::CallForHelp();
+        };
+        app.add_flag_callback("--help-all", show, "Print this help message with all options, and exit")
+            ->configurable(false);
+    }
+
+    /// Before help is printed. CLI11 shows no option without a group, nor names it in an error.
+    void choose_for_help() {
+        if (help_all) app.footer("");
+        for (const Known& flag : known)
+            if (flag.expert && !help_all) flag.option->group("");
     }
 
     std::string name_of(const CLI::Option* option) const {
@@ -281,11 +326,10 @@ class Flags::Impl {
     std::string config() const {
         std::string text = "# " + app.get_name() + " " + version() + ": all options, for --config\n";
         std::string group;
-        for (const auto& [option, value] : known) {
+        for (const auto& [option, value, heading, expert] : known) {
             if (!option->get_configurable()) continue;
-            if (option->get_group() != group && option->get_group() != "Options")
-                text += "\n# " + option->get_group() + "\n";
-            group = option->get_group();
+            if (heading != group && !heading.empty()) text += "\n# " + heading + "\n";
+            group = heading;
             const std::string written = config_text({"", value()});
             std::string description = option->get_description();
             std::replace(description.begin(), description.end(), '\n', ' ');
@@ -309,23 +353,23 @@ class Flags::Impl {
     struct Known {
         CLI::Option* option;
         std::function<decltype(FlagValue::value)()> value;
+        std::string heading;  ///< of its module; empty for the program's own
+        bool expert;          ///< shown by --help-all only
     };
 
     Checks checks;
     CLI::App app;
-    std::string heading, prefix;
     CLI::Option* last = nullptr;
     std::vector<Known> known;
-    bool dump = false;
+    bool dump = false, help_all = false;
 };
 
 Flags::Flags(const std::string& program, const std::string& description)
     : impl_(std::make_unique<Impl>(program, description)) {}
 Flags::~Flags() = default;
 
-void Flags::section(const std::string& heading, const std::string& prefix) {
-    impl_->heading = heading;
-    impl_->prefix = prefix;
+void Flags::add(const OptionList& list, const std::string& prefix) {
+    for (const Option& option : list.options()) impl_->add(option, prefix, list.heading());
 }
 
 void Flags::add(const std::string& name, double& field, const std::string& description) {
@@ -381,6 +425,7 @@ int Flags::parse(int argc, const char* const* argv) {
         if (const std::string word = impl_->single_dash(argc, argv); !word.empty()) return wrong(word);
         impl_->app.parse(argc, argv);
     } catch (const CLI::Success& success) {
+        impl_->choose_for_help();
         std::ostringstream text;
         impl_->app.exit(success, text, text);
         return impl_->say(text.str());
@@ -399,7 +444,8 @@ int Flags::parse(int argc, const char* const* argv) {
 
 std::vector<FlagValue> Flags::values() const {
     std::vector<FlagValue> values;
-    for (const auto& [option, value] : impl_->known) values.push_back({impl_->name_of(option), value()});
+    for (const auto& [option, value, heading, expert] : impl_->known)
+        values.push_back({impl_->name_of(option), value()});
     return values;
 }
 

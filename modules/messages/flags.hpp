@@ -11,6 +11,8 @@
 #include <variant>
 #include <vector>
 
+#include "core/option_list.hpp"
+
 namespace planemap {
 
 /// An option by its long name without dashes (of an argument without a name: what --help calls it), and its
@@ -31,11 +33,10 @@ class Flags {
     Flags(const Flags&) = delete;
     Flags& operator=(const Flags&) = delete;
 
-    /// From here on: the heading in --help, and what leads each flag's name.
-    ///   flags.section("Segmentation", "segmentation-");
-    ///   flags.add("min-inliers", options.min_inliers, "smallest region, points");   //
-    ///   --segmentation-min-inliers
-    void section(const std::string& heading, const std::string& prefix = "");
+    /// A flag for each option of a module, its name led by `prefix`, under the list's heading. --help shows
+    /// those for users, --help-all all of them.
+    ///   flags.add(options_of(options.map), "map-");   // --map-merge-gap-m and the others
+    void add(const OptionList& list, const std::string& prefix = "");
 
     /// A flag with a value. Short forms stand before the name: "o,output".
     void add(const std::string& name, double& field, const std::string& description);
@@ -56,8 +57,8 @@ class Flags {
     void add_positional(const std::string& name, std::string& field, const std::string& description,
                         bool required = true);
 
-    /// Returns -1 to go on, or the exit code: 0 after --help, --version and --dump-config, 2 for wrong flags
-    /// (said in one line on stderr; a flag that is not known with the nearest one that is).
+    /// Returns -1 to go on, or the exit code: 0 after --help, --help-all, --version and --dump-config, 2 for
+    /// wrong flags (said in one line on stderr; a flag that is not known with the nearest one that is).
     int parse(int argc, const char* const* argv);
 
     /// All options in the order they were added, with their values now.

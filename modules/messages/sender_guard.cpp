@@ -7,8 +7,6 @@
 
 #include "core/stamp.hpp"
 
-#include "core/stamp.hpp"
-
 namespace planemap {
 
 namespace {

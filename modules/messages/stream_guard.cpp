@@ -5,10 +5,11 @@
 
 namespace planemap {
 
-bool StreamGuard::admits(std::int32_t seq, std::optional<std::int64_t> utime,
+bool StreamGuard::admits(std::int64_t session, std::int32_t seq, std::optional<std::int64_t> utime,
                          std::span<const std::uint8_t> bytes) {
     using Verdict = SenderGuard::Verdict;
     SenderGuard::Message message;
+    if (session != 0) message.sender = static_cast<std::uint64_t>(session);
     message.seq = static_cast<std::uint32_t>(seq);
     message.utime = utime;
     message.checksum = checksum_of(bytes);

@@ -20,10 +20,12 @@ class StreamGuard {
     StreamGuard(const std::string& channel, std::string things, ModuleStatus& status, bool main_stream = true)
         : guard_(channel), things_(std::move(things)), status_(status), main_stream_(main_stream) {}
 
-    /// Whether to use a message. One that repeats the last, byte for byte, is not used; beside the main
-    /// stream it is for those who came late, in it (nobody sends those again but a replay of an old log) it
-    /// is counted. One that comes late is admitted: the module knows what it can do with it.
-    bool admits(std::int32_t seq, std::optional<std::int64_t> utime, std::span<const std::uint8_t> bytes);
+    /// Whether to use a message; `session` is the sender's id, or 0 if it does not say. One that repeats the
+    /// last, byte for byte, is not used; beside the main stream it is for those who came late, in it (nobody
+    /// sends those again but a replay of an old log) it is counted. One that comes late is admitted: the
+    /// module knows what it can do with it.
+    bool admits(std::int64_t session, std::int32_t seq, std::optional<std::int64_t> utime,
+                std::span<const std::uint8_t> bytes);
 
   private:
     SenderGuard guard_;

@@ -14,6 +14,7 @@
 #include "core/camera.hpp"
 #include "core/image.hpp"
 #include "core/keyframe.hpp"
+#include "core/option_list.hpp"
 #include "core/replacement.hpp"
 #include "octomap/octomap_sizes.hpp"
 #include "octomap/scan_insertion.hpp"
@@ -22,19 +23,21 @@
 
 namespace planemap {
 
+/// Options of OctomapBuilder; options_of() says what each is.
 struct OctomapOptions {
-    double resolution_m = 0.05;  ///< edge of a leaf
-    double max_range_m = 0;      ///< readings further away clear space up to here and occupy nothing; 0: the
-                                 ///< camera's depth_max_m
-    int subsample = 1;           ///< every n-th pixel along u and v
-    std::size_t max_keyframes = 2000;  ///< keyframes whose depth is kept for rebuilding (about 150 KB each).
-                                       ///< Beyond it the oldest is frozen at its pose and its depth dropped
-    double moved_m = 0.002;            ///< keyframes that moved less than this,
-    double moved_deg = 0.05;           ///< and turned less than this, do not cause a rebuild
+    double resolution_m = 0.05;
+    double max_range_m = 0;
+    int subsample = 1;
+    std::size_t max_keyframes = 2000;
+    double moved_m = 0.002;
+    double moved_deg = 0.05;
 
     /// Throws std::invalid_argument that names every bad field.
     void validate() const;
 };
+
+/// Refers to `options`, which must outlive it.
+OptionList options_of(OctomapOptions& options);
 
 /// Builds an OctoMap from the keyframes' depth images, beside the map of planes, and rebuilds it when the
 /// graph moves keyframes. OctoMap's update is not exactly independent of order (log-odds are clamped), so

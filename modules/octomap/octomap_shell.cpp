@@ -67,7 +67,7 @@ void OctomapShell::drop(const char* reason, std::int64_t count) {
 
 void OctomapShell::on_keyframe(const RawMessage& message) {
     const keyframe_t received = decode<keyframe_t>(message.bytes);
-    if (!keyframe_guard_.admits(received.seq, received.utime, message.bytes)) return;
+    if (!keyframe_guard_.admits(received.session, received.seq, received.utime, message.bytes)) return;
     watch_.came(received.id, received.previous_id, received.utime);
     const auto recent = std::find_if(recent_.begin(), recent_.end(),
                                      [&](const Recent& r) { return r.frame->utime() == received.utime; });
@@ -87,7 +87,7 @@ void OctomapShell::on_keyframe(const RawMessage& message) {
 void OctomapShell::on_trajectory(const RawMessage& message) {
     const trajectory_t received = decode<trajectory_t>(message.bytes);
     const KeyframeTrajectory trajectory = from_message(received);
-    if (!trajectory_guard_.admits(received.seq, std::nullopt, message.bytes)) return;
+    if (!trajectory_guard_.admits(received.session, received.seq, std::nullopt, message.bytes)) return;
     watch_.named(trajectory, now_us());
     last_utime_ = trajectory.utime;
     last_revision_ = trajectory.revision;

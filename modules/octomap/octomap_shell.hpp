@@ -81,7 +81,4 @@ class OctomapShell : public Shell {
     std::int32_t seq_ = 0;
 };
 
-/// Flags for the options, each named --<prefix>NAME.
-void add_flags(Flags& flags, OctomapOptions& options, const std::string& prefix = "");
-
 }  // namespace planemap

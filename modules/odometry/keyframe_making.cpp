@@ -80,6 +80,9 @@ Keyframe make_keyframe(const OdometryOptions& options, const PreparedFrame& fram
                        const FrameMotion& motion) {
     Keyframe keyframe;
     keyframe.utime = keyframe.pose_utime = frame.utime;
+    keyframe.noise = frame.camera->noise;
+    keyframe.depth_min_m = frame.camera->depth_min_m;
+    keyframe.depth_max_m = frame.camera->depth_max_m;
     keyframe.regions = frame.regions;
     if (!frame.gray) return keyframe;
     keyframe.features =

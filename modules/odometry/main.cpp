@@ -4,7 +4,7 @@
 int main(int argc, char** argv) {
     planemap::Process process("odometry", "Frames and planar regions to the camera's motion, and keyframes.");
     planemap::odometry::OdometryOptions options;
-    add_flags(process.flags(), options);
+    process.flags().add(options_of(options));
     return process.run(argc, argv, [&](planemap::Bus& bus) {
         return std::make_unique<planemap::odometry::OdometryShell>(
             bus, std::make_shared<planemap::FrameDecoder>(bus), options);

@@ -123,11 +123,11 @@ void OdometryShell::process(const Waiting& input) {
         const ModuleStatus::Work work(status_);
         result = odometry_.process(in);
     }
-    bus_.publish(channels::kOdometry, to_message(result.estimate, odometry_seq_++));
+    bus_.publish(channels::kOdometry, to_message(result.estimate, odometry_seq_++, bus_.session()));
     if (result.estimate.status != TrackingStatus::kLost)
         bus_.publish(channels::kPose, to_pose_message(result.estimate));
     if (const auto& keyframe = result.keyframe) {
-        bus_.publish(channels::kKeyframe, to_message(*keyframe, keyframe_seq_++));
+        bus_.publish(channels::kKeyframe, to_message(*keyframe, keyframe_seq_++, bus_.session()));
         remark_new_part(status_, keyframe->id, keyframe->previous_id, keyframe->utime);
     }
     status_.published();

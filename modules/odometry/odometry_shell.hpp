@@ -59,7 +59,4 @@ class OdometryShell : public Shell {
     std::int32_t odometry_seq_ = 0, keyframe_seq_ = 0;
 };
 
-/// Flags for the options, each named --<prefix>NAME.
-void add_flags(Flags& flags, OdometryOptions& options, const std::string& prefix = "");
-
 }  // namespace planemap::odometry

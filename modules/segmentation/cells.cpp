@@ -154,36 +154,8 @@ void CellSegmenter::rename_labels() {
 
 }  // namespace
 
-void CellOptions::check(const std::string& prefix, FieldErrors& errors) const {
-    const auto positive = [&](double value, const char* field) {
-        errors.require(std::isfinite(value) && value > 0, prefix + field, value, "finite and greater than 0");
-    };
-    const auto angle = [&](double value, const char* field) {
-        errors.require(value > 0 && value < 90, prefix + field, value, "between 0 and 90, both exclusive");
-    };
-    errors.require(min_region_fraction >= 0 && min_region_fraction <= 1, prefix + "min_region_fraction",
-                   min_region_fraction, "0 to 1");
-    errors.require(min_fill > 0 && min_fill <= 1, prefix + "min_fill", min_fill, "greater than 0, at most 1");
-    positive(planarity_sigmas, "planarity_sigmas");
-    errors.require(std::isfinite(lateral_px) && lateral_px >= 0, prefix + "lateral_px", lateral_px,
-                   "finite and at least 0");
-    positive(step_m, "step_m");
-    positive(step_sigmas, "step_sigmas");
-    positive(grow_m, "grow_m");
-    positive(grow_sigmas, "grow_sigmas");
-    angle(grow_angle_deg, "grow_angle_deg");
-    positive(merge_m, "merge_m");
-    positive(merge_sigmas, "merge_sigmas");
-    angle(merge_angle_deg, "merge_angle_deg");
-    angle(bend_deg, "bend_deg");
-    positive(thickness_m, "thickness_m");
-    positive(thickness_sigmas, "thickness_sigmas");
-}
-
 std::unique_ptr<Segmenter> make_cell_segmenter(const CellOptions& options, const CellKernels& kernels) {
-    FieldErrors errors("cell options");
-    options.check("", errors);
-    errors.throw_if_any();
+    options.validate();
     return std::make_unique<CellSegmenter>(options, kernels);
 }
 

@@ -149,21 +149,8 @@ class RansacSegmenter : public Segmenter {
 
 }  // namespace
 
-void RansacOptions::check(const std::string& prefix, FieldErrors& errors) const {
-    errors.require(std::isfinite(thickness_m) && thickness_m > 0, prefix + "thickness_m", thickness_m,
-                   "finite and greater than 0");
-    errors.require(min_inliers >= 3, prefix + "min_inliers", min_inliers, "at least 3");
-    errors.require(max_planes >= 1 && max_planes <= 1000, prefix + "max_planes", max_planes, "1 to 1000");
-    errors.require(subsampling >= 1 && subsampling <= 16, prefix + "subsampling", subsampling, "1 to 16");
-    errors.require(max_iterations >= 1, prefix + "max_iterations", max_iterations, "at least 1");
-    errors.require(probability > 0 && probability < 1, prefix + "probability", probability,
-                   "between 0 and 1, both exclusive");
-}
-
 std::unique_ptr<Segmenter> make_ransac_segmenter(const RansacOptions& options, std::uint64_t seed) {
-    FieldErrors errors("RANSAC options");
-    options.check("", errors);
-    errors.throw_if_any();
+    options.validate();
     return std::make_unique<RansacSegmenter>(options, seed);
 }
 

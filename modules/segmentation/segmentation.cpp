@@ -1,17 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "segmentation/segmentation.hpp"
 
-#include "core/validation.hpp"
-
 namespace planemap::segmentation {
-
-void SegmentationOptions::validate() const {
-    FieldErrors errors("segmentation options");
-    errors.require(method == "cells" || method == "ransac", "method", method, "\"cells\" or \"ransac\"");
-    cells.check("cells.", errors);
-    ransac.check("ransac.", errors);
-    errors.throw_if_any();
-}
 
 std::unique_ptr<Segmenter> make_segmenter(const SegmentationOptions& options) {
     options.validate();

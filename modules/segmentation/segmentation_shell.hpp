@@ -28,7 +28,4 @@ class SegmentationShell : public Shell {
     std::int32_t seq_ = 0;
 };
 
-/// Flags for the options, each named --<prefix>NAME.
-void add_flags(Flags& flags, SegmentationOptions& options, const std::string& prefix = "");
-
 }  // namespace planemap::segmentation

@@ -15,8 +15,8 @@ int main(int argc, char** argv) {
                                    "TUM-layout folder, or sim:WORLD[?KEY=VALUE&...], see above");
     bool check = false;
     process.flags().add("check", check, "Only say whether input, flags and URL are good; nothing is sent");
-    add_pacing_flags(process.flags(), options);
-    add_encoding_flags(process.flags(), options);
+    process.flags().add(pacing_of(options));
+    process.flags().add(encoding_of(options));
     return process.run(argc, argv, [&](planemap::Bus& bus) {
         auto shell =
             std::make_unique<planemap::SensorShell>(bus, planemap::open_source(input, source), options);

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 #include <stdexcept>
 
 #include "core/validation.hpp"
@@ -16,20 +15,13 @@ namespace planemap {
 
 namespace {
 constexpr std::int64_t kCameraPeriodUs = 1000000;
-
-std::uint64_t random_sender() {
-    std::random_device random;
-    return std::uint64_t{random()} << 32 | random();
-}
 }  // namespace
 
 void SensorShellOptions::validate() const {
     FieldErrors errors("sensor");
-    errors.require(std::isfinite(rate_hz) && rate_hz >= 0 && rate_hz <= 1000, "rate", rate_hz, "0 to 1000");
-    errors.require(std::isfinite(speed) && speed >= 0 && speed <= 1000, "speed", speed, "0 to 1000");
-    errors.require(color == "jpeg" || color == "raw", "color", color, "jpeg or raw");
-    errors.require(depth == "zipped" || depth == "raw", "depth", depth, "zipped or raw");
-    errors.require(jpeg_quality >= 1 && jpeg_quality <= 100, "jpeg-quality", jpeg_quality, "1 to 100");
+    SensorShellOptions copy = *this;
+    pacing_of(copy).check(errors);
+    encoding_of(copy).check(errors);
     errors.throw_if_any();
 }
 
@@ -38,7 +30,7 @@ SensorShell::SensorShell(Bus& bus, std::unique_ptr<FrameSource> source, SensorSh
     options_.validate();
     for (const std::string& note : source_->notes()) spdlog::warn("{}", note);
     if (options_.live) ahead_ = std::make_unique<ReadAhead>(source_);
-    if (!bus_.in_process()) sender_ = random_sender();
+    if (bus_.session() != 0) sender_ = static_cast<std::uint64_t>(bus_.session());
 }
 
 /// The first fault of each kind is told at once; the status and the bus's complaints count them all.
@@ -171,16 +163,22 @@ void SensorShell::publish(const SensorFrame& frame) {
     status_.published();
 }
 
-void add_pacing_flags(Flags& flags, SensorShellOptions& options) {
-    flags.add("rate", options.rate_hz, "Frames a second, whatever the timestamps say; 0: as recorded");
-    flags.add("speed", options.speed, "Times the recorded speed; 0: as fast as possible");
+OptionList pacing_of(SensorShellOptions& options) {
+    OptionList list("Pacing");
+    list.add("rate", options.rate_hz, {0, 1000, "Hz"},
+             "Frames a second, whatever the timestamps say; 0: as recorded");
+    list.add("speed", options.speed, {0, 1000},
+             "Times the recorded speed; 0: as fast as the frames are taken");
+    return list;
 }
 
-void add_encoding_flags(Flags& flags, SensorShellOptions& options) {
-    flags.add_choice("color", options.color, {"jpeg", "raw"},
-                     "How colour pixels are sent; a stored JPEG goes as it is");
-    flags.add_choice("depth", options.depth, {"zipped", "raw"}, "How depth is sent");
-    flags.add("jpeg-quality", options.jpeg_quality, "1 to 100");
+OptionList encoding_of(SensorShellOptions& options) {
+    OptionList list("Encoding");
+    list.add("color", options.color, {"jpeg", "raw"},
+             "How colour pixels are sent; a stored JPEG goes as it is");
+    list.add("depth", options.depth, {"zipped", "raw"}, "How depth is sent");
+    list.add("jpeg_quality", options.jpeg_quality, {1, 100}, "Of colour pixels that are sent as JPEG");
+    return list;
 }
 
 }  // namespace planemap

@@ -11,11 +11,12 @@
 
 namespace planemap {
 
+/// Options of SensorShell; pacing_of() and encoding_of() say what each is.
 struct SensorShellOptions {
-    double rate_hz = 0;          ///< frames a second whatever the timestamps say; 0: by the timestamps
-    double speed = 1;            ///< times the recorded speed; 0: as fast as the consumer takes them
-    std::string color = "jpeg";  ///< "jpeg" or "raw": how colour pixels are sent; a stored JPEG goes as it is
-    std::string depth = "zipped";  ///< "zipped" or "raw": how depth is sent
+    double rate_hz = 0;
+    double speed = 1;
+    std::string color = "jpeg";
+    std::string depth = "zipped";
     int jpeg_quality = 94;
     bool live = false;  ///< as a process of its own: the source is read on a thread of its own, and the
                         ///< camera is told once a second by the wall clock. Otherwise all happens in poll(),
@@ -77,9 +78,9 @@ class SensorShell : public Shell {
     std::string first_fault_;  ///< of a frame that could not be used
 };
 
-/// --rate, --speed.
-void add_pacing_flags(Flags& flags, SensorShellOptions& options);
-/// --color, --depth, --jpeg-quality.
-void add_encoding_flags(Flags& flags, SensorShellOptions& options);
+/// rate and speed. Refers to `options`, which must outlive it.
+OptionList pacing_of(SensorShellOptions& options);
+/// color, depth and jpeg_quality. Refers to `options`, which must outlive it.
+OptionList encoding_of(SensorShellOptions& options);
 
 }  // namespace planemap

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -12,6 +11,7 @@
 #include <tuple>
 
 #include "core/files.hpp"
+#include "core/option_list.hpp"
 #include "core/trajectory_file.hpp"
 #include "core/validation.hpp"
 
@@ -55,70 +55,36 @@ T parse_number(const std::string& key, const std::string& text) {
     return value;
 }
 
-bool parse_switch(const std::string& key, const std::string& text) {
-    if (text == "0" || text == "1") return text == "1";
-    throw std::invalid_argument("simulator parameter " + key + " is \"" + text + "\", must be 0 or 1");
+void parse(const std::string& key, const std::string& text, bool& field) {
+    if (text != "0" && text != "1")
+        throw std::invalid_argument("simulator parameter " + key + " is \"" + text + "\", must be 0 or 1");
+    field = text == "1";
 }
-
-/// How each parameter of a name is set.
-using Setter = std::function<void(SimulatorOptions&, const std::string& key, const std::string& text)>;
-
+void parse(const std::string& key, const std::string& text, std::string& field) {
+    if (text.empty()) throw std::invalid_argument("simulator parameter " + key + " is empty, must be a file");
+    field = text;
+}
 template <typename T>
-Setter number_setter(T SimulatorOptions::*field) {
-    return [field](SimulatorOptions& options, const std::string& key, const std::string& text) {
-        options.*field = parse_number<T>(key, text);
-    };
-}
-Setter switch_setter(bool SimulatorOptions::*field) {
-    return [field](SimulatorOptions& options, const std::string& key, const std::string& text) {
-        options.*field = parse_switch(key, text);
-    };
-}
-
-const std::map<std::string, Setter>& setters() {
-    using O = SimulatorOptions;
-    static const std::map<std::string, Setter> kSetters{
-        {"frames", number_setter(&O::frames)},
-        {"seed", number_setter(&O::seed)},
-        {"rate", number_setter(&O::rate_hz)},
-        {"width", number_setter(&O::width)},
-        {"height", number_setter(&O::height)},
-        {"noise", switch_setter(&O::noise)},
-        {"registered", switch_setter(&O::registered)},
-        {"units", number_setter(&O::depth_units_per_metre)},
-        {"min", number_setter(&O::depth_min_m)},
-        {"max", number_setter(&O::depth_max_m)},
-        {"color_noise", number_setter(&O::color_noise)},
-        {"blur", number_setter(&O::blur_samples)},
-        {"shutter", number_setter(&O::shutter_s)},
-        {"jitter", number_setter(&O::color_jitter_s)},
-        {"drift", number_setter(&O::exposure_drift)},
-        {"light", number_setter(&O::light)},
-        {"speed", number_setter(&O::speed_m_s)},
-        {"turn", number_setter(&O::turn_deg_s)},
-        {"visits", number_setter(&O::visits)},
-        {"trajectory", [](O& o, const std::string& key, const std::string& text) {
-             if (text.empty())
-                 throw std::invalid_argument("simulator parameter " + key + " is empty, must be a file");
-             o.trajectory = text;
-         }}};
-    return kSetters;
+void parse(const std::string& key, const std::string& text, T& field) {
+    field = parse_number<T>(key, text);
 }
 
 void set_parameter(SimulatorOptions& options, const std::string& parameter, std::vector<std::string>& seen) {
     const auto equals = parameter.find('=');
     const std::string key = parameter.substr(0, equals);
-    const auto setter = setters().find(key);
-    if (setter == setters().end() || equals == std::string::npos) {
-        std::vector<std::string> known;
-        for (const auto& [name, unused] : setters()) known.push_back(name);
-        throw std::invalid_argument(
-            "\"" + parameter + "\" is not a simulator parameter; KEY=VALUE with a key of: " + joined(known));
+    const OptionList list = options_of(options);
+    std::vector<std::string> known;
+    for (const Option& option : list.options()) {
+        known.push_back(option.name);
+        if (option.name != key || equals == std::string::npos) continue;
+        if (std::find(seen.begin(), seen.end(), key) != seen.end())
+            throw std::invalid_argument("simulator parameter " + key + " is given twice");
+        seen.push_back(key);
+        std::visit([&](auto* field) { parse(key, parameter.substr(equals + 1), *field); }, option.field);
+        return;
     }
-    if (std::find(seen.begin(), seen.end(), key) != seen.end())
-        throw std::invalid_argument("simulator parameter " + key + " is given twice");
-    seen.push_back(key);
-    setter->second(options, key, parameter.substr(equals + 1));
+    throw std::invalid_argument("\"" + parameter +
+                                "\" is not a simulator parameter; KEY=VALUE with a key of: " + joined(known));
 }
 
 CameraInfo make_camera(const SimulatorOptions& options) {
@@ -163,29 +129,44 @@ nlohmann::json to_json(const Eigen::Vector3d& v) {
 
 }  // namespace
 
+OptionList options_of(SimulatorOptions& options) {
+    OptionList list("Simulator");
+    list.add("frames", options.frames, {0, kMaxFrames},
+             "Frames in all; 0: 900, or the length of the visits or the trajectory");
+    list.add("seed", options.seed, kAnyNumber, "Of textures, walk and noise");
+    list.add("rate", options.rate_hz, {0.1, 1000, "Hz"}, "Frames a second");
+    list.add("width", options.width, {16, 4096, "px"}, "Of both images");
+    list.add("height", options.height, {16, 4096, "px"}, "Of both images");
+    list.add("noise", options.noise, "Of depth and colour; 0: none");
+    list.add("registered", options.registered, "0: depth from a camera of its own, 2.5 cm beside");
+    list.add("units", options.depth_units_per_metre,
+             {CameraLimits::kLeastUnits, CameraLimits::kMostUnits, "1/m"}, "Of the raw depth");
+    list.add("min", options.depth_min_m, {0, 100, "m"}, "Least depth that is sensed");
+    list.add("max", options.depth_max_m, {0, 1000, "m"}, "Largest depth that is sensed; more than min");
+    list.add("color_noise", options.color_noise, {0, 50}, "Standard deviation of colour, of 255 levels");
+    list.add("blur", options.blur_samples, {1, 16}, "Views that are averaged for motion blur; 1: none");
+    list.add("shutter", options.shutter_s, {0, 1, "s"}, "Exposure time of colour with motion blur");
+    list.add("jitter", options.color_jitter_s, {0, 5, "s"},
+             "Colour is taken up to this much before or after depth; at most half a frame");
+    list.add("drift", options.exposure_drift, {0, 0.5}, "Share by which brightness swings");
+    list.add("light", options.light, kShare, "Brightness; 0: darkness, and noise alone");
+    list.add("speed", options.speed_m_s, {0.01, 10, "m/s"}, "Of the walk, where it does not turn");
+    list.add("turn", options.turn_deg_s, {1, 1000, "deg/s"}, "Of the walk, where it stands");
+    list.add("visits", options.visits, {0, 10000},
+             "The walk visits the world's places in random order, so many in all; 0: it goes its tour");
+    list.add("trajectory", options.trajectory, std::vector<std::string>{},
+             "File of a recorded hand-held trajectory to follow, TUM format, its world's y pointing down; "
+             "empty: the world's own walk");
+    return list;
+}
+
 void SimulatorOptions::validate() const {
     FieldErrors errors("simulator options");
-    const auto within = [&](double value, double low, double high, const char* field, const char* allowed) {
-        errors.require(value >= low && value <= high, field, value, allowed);
-    };
     errors.require(worlds().contains(world), "world", world, "one of: " + joined(world_names()));
-    within(frames, 0, kMaxFrames, "frames", "0 to 1000000");
-    within(rate_hz, 0.1, 1000, "rate", "0.1 to 1000");
-    within(width, 16, 4096, "width", "16 to 4096");
-    within(height, 16, 4096, "height", "16 to 4096");
-    within(depth_units_per_metre, CameraLimits::kLeastUnits, CameraLimits::kMostUnits, "units",
-           "100 to 100000");
-    within(depth_min_m, 0, 100, "min", "0 to 100");
-    within(depth_max_m, depth_min_m + 1e-9, 1000, "max", "greater than min, at most 1000");
-    within(color_noise, 0, 50, "color_noise", "0 to 50");
-    within(blur_samples, 1, 16, "blur", "1 to 16");
-    within(shutter_s, 0, 1, "shutter", "0 to 1");
-    within(color_jitter_s, 0, 0.5 / std::max(rate_hz, 0.1), "jitter", "0 to half a frame");
-    within(exposure_drift, 0, 0.5, "drift", "0 to 0.5");
-    within(light, 0, 1, "light", "0 to 1");
-    within(speed_m_s, 0.01, 10, "speed", "0.01 to 10");
-    within(turn_deg_s, 1, 1000, "turn", "1 to 1000");
-    within(visits, 0, 10000, "visits", "0 to 10000");
+    SimulatorOptions copy = *this;
+    options_of(copy).check(errors);
+    errors.require(!(depth_max_m <= depth_min_m), "max", depth_max_m, "greater than min");
+    errors.require(!(color_jitter_s > 0.5 / rate_hz), "jitter", color_jitter_s, "at most half a frame");
     errors.throw_if_any();
 }
 
@@ -199,18 +180,16 @@ std::string simulator_help() {
     std::string text = "Simulated worlds:\n";
     for (const auto& [name, world] : worlds())
         text += "  sim:" + name + std::string(12 - name.size(), ' ') + world.what + "\n";
-    return text +
-           "with parameters, as in sim:office?frames=300&seed=7:\n"
-           "  frames, seed, rate (Hz), width, height (pixels), noise (0 or 1), registered (0: depth from a "
-           "camera\n"
-           "  2.5 cm beside), units (of depth, a metre), min, max (depth, m), color_noise (of 255 levels), "
-           "blur\n"
-           "  (views averaged), shutter (s), jitter (colour before or after depth, s), drift (of "
-           "brightness), "
-           "light\n"
-           "  (0: darkness), speed (m/s), turn (deg/s), visits (places in random order), trajectory (file, "
-           "TUM\n"
-           "  format, y down)";
+    text += "with parameters, as in sim:office?frames=300&seed=7:\n";
+    SimulatorOptions defaults;
+    const OptionList list = options_of(defaults);
+    for (const Option& option : list.options()) {
+        const std::string range = option.range_and_unit();
+        text += "  " + option.name + std::string(13 - option.name.size(), ' ') + option.help +
+                (range.empty() ? "" : " [" + range + "]") + "\n";
+    }
+    text.pop_back();
+    return text;
 }
 
 SimulatorOptions parse_simulator_name(const std::string& name) {

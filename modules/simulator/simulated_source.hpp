@@ -3,41 +3,44 @@
 
 #include <filesystem>
 
+#include "core/frame_range.hpp"
+#include "core/frame_source.hpp"
+#include "core/option_list.hpp"
 #include "core/trajectory.hpp"
 #include "simulator/path.hpp"
 #include "simulator/sensor_model.hpp"
-#include "core/frame_range.hpp"
-#include "core/frame_source.hpp"
 
 namespace planemap::simulator {
 
-/// What is simulated. In a name, "sim:WORLD?key=value&...", the keys stand in brackets.
+/// What is simulated; options_of() says what each is.
 struct SimulatorOptions {
-    std::string world = "office";         ///< see world_names()
-    int frames = 0;                       ///< [frames] 0: 900, or the length of the trajectory or the visits
-    std::uint64_t seed = 1;               ///< [seed] of textures, walk and noise
-    double rate_hz = 30;                  ///< [rate] frames a second
-    int width = 640, height = 480;        ///< [width, height] of both images, 16 to 4096 pixels
-    bool noise = true;                    ///< [noise=0|1] of depth and colour
-    bool registered = true;               ///< [registered=0|1] 0: a depth camera of its own, 2.5 cm beside
-    double depth_units_per_metre = 1000;  ///< [units]
-    double depth_min_m = 0.5, depth_max_m = 4.0;  ///< [min, max]
-    double color_noise = 2.5;                     ///< [color_noise] standard deviation, of 255 levels
-    int blur_samples = 1;                         ///< [blur] views averaged for motion blur, 1 to 16; 1: none
-    double shutter_s = 0.015;                     ///< [shutter] exposure time of colour with motion blur
-    double color_jitter_s = 0;  ///< [jitter] colour is taken up to this much before or after depth
-    double exposure_drift = 0;  ///< [drift] brightness swings by this share, 0 to 0.5
-    double light = 1;           ///< [light] brightness, 0 (darkness: noise alone) to 1
-    double speed_m_s = 0.5;     ///< [speed] of the walk, when it does not turn
-    double turn_deg_s = 45;     ///< [turn] of the walk, when it stands
-    int visits = 0;          ///< [visits] instead of its tour, the walk visits the world's places in random
-                             ///< order, so many in all; 0: the tour
-    std::string trajectory;  ///< [trajectory] file of a recorded hand-held trajectory to follow, TUM
-                             ///< format, its world's y pointing down; empty: the world's own walk
+    std::string world = "office";  ///< see world_names()
+    int frames = 0;
+    std::uint64_t seed = 1;
+    double rate_hz = 30;
+    int width = 640, height = 480;
+    bool noise = true;
+    bool registered = true;
+    double depth_units_per_metre = 1000;
+    double depth_min_m = 0.5, depth_max_m = 4.0;
+    double color_noise = 2.5;
+    int blur_samples = 1;
+    double shutter_s = 0.015;
+    double color_jitter_s = 0;
+    double exposure_drift = 0;
+    double light = 1;
+    double speed_m_s = 0.5;
+    double turn_deg_s = 45;
+    int visits = 0;
+    std::string trajectory;
 
     /// Throws std::invalid_argument that names every bad field.
     void validate() const;
 };
+
+/// By the keys of a name, "sim:WORLD?key=value&..."; all but the world. Refers to `options`, which must
+/// outlive it.
+OptionList options_of(SimulatorOptions& options);
 
 /// The worlds there are.
 std::vector<std::string> world_names();

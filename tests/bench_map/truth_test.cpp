@@ -13,7 +13,8 @@ using Eigen::Vector3d;
 const PinholeCamera kCamera{640, 480, 525, 525, 319.5, 239.5};
 
 /// Adds a panel that faces -y (towards a camera that looks along y), `left` and `right` along x, 2 m high.
-void add_panel(simulator::WorldBuilder& builder, const std::string& name, double left, double right, double y) {
+void add_panel(simulator::WorldBuilder& builder, const std::string& name, double left, double right,
+               double y) {
     builder.add_panel(name, {left, y, 1}, Vector3d::UnitX(), -Vector3d::UnitZ(), right - left, 2,
                       {simulator::Pattern::kPaint, {1, 1, 1}});
 }

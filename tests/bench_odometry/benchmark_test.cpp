@@ -44,7 +44,8 @@ TEST(Benchmark, ErrorsNameMethodSequenceAndReason) {
     BenchmarkOptions bad;
     bad.frames = -1;
     bad.slow_frames = -2;
-    EXPECT_THAT(test::error_of([&] { Benchmark{bad}; }), AllOf(HasSubstr("frames"), HasSubstr("slow-frames")));
+    EXPECT_THAT(test::error_of([&] { Benchmark{bad}; }),
+                AllOf(HasSubstr("frames"), HasSubstr("slow-frames")));
 }
 
 }  // namespace

@@ -24,7 +24,8 @@ TEST(ParseMethods, NamesWhatThereIs) {
 
 TEST(RunMethod, EveryMethodFollowsAnEasyWalk) {
     const std::string input = "sim:office?width=320&height=240&frames=20";
-    const Trajectory truth = simulator::SimulatedSource(simulator::parse_simulator_name(input)).ground_truth();
+    const Trajectory truth =
+        simulator::SimulatedSource(simulator::parse_simulator_name(input)).ground_truth();
     for (const MethodInfo& method : known_methods()) {
         std::int64_t seen = 0;
         const MethodRun run =
@@ -45,8 +46,9 @@ TEST(RunMethod, EveryMethodFollowsAnEasyWalk) {
 
 TEST(RunMethod, MissingInputIsNamed) {
     for (const char* method : {"default", "opencv-rgbd"}) {
-        EXPECT_THAT(test::error_of([&] { run_method(method, "/no/such/folder", 0, {}, [](std::int64_t) {}); }),
-                    HasSubstr("/no/such/folder"));
+        EXPECT_THAT(
+            test::error_of([&] { run_method(method, "/no/such/folder", 0, {}, [](std::int64_t) {}); }),
+            HasSubstr("/no/such/folder"));
     }
 }
 

@@ -18,7 +18,8 @@ using testing::HasSubstr;
 TEST(ParseMethods, NamesAndSubsamplings) {
     EXPECT_THAT(parse_methods("ransac/4,cells"), ElementsAre(MethodName{"ransac", 4}, MethodName{"cells", 1},
                                                              MethodName{"cells", 2}, MethodName{"cells", 4}));
-    EXPECT_THAT(test::error_of([] { parse_methods("hough"); }), AllOf(HasSubstr("hough"), HasSubstr("ransac")));
+    EXPECT_THAT(test::error_of([] { parse_methods("hough"); }),
+                AllOf(HasSubstr("hough"), HasSubstr("ransac")));
     for (const char* bad : {"cells/", "cells/0", "cells/17", "cells/x", "cells/2x", "cells/-1"})
         EXPECT_THAT(test::error_of([&] { parse_methods(bad); }), HasSubstr(bad));
     EXPECT_THAT(test::error_of([] { parse_methods(""); }), HasSubstr("none"));

@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "temporary_folder.hpp"
-#include "simulator/simulated_source.hpp"
 #include "simulate/recording.hpp"
+#include "simulator/simulated_source.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap::bench_soak {
 namespace {

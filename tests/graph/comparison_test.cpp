@@ -35,18 +35,17 @@ class ComparisonTest : public testing::Test {
 
 TEST_F(ComparisonTest, PlaneAgreementCountsSamples) {
     KeyframeView a = view_at(here_), b = a;
-    EXPECT_EQ(compare_planes(a, b, Pose::Identity(), {}).agree, 0);
+    EXPECT_EQ(compare_planes(a, b, Pose::Identity()).agree, 0);
     a.regions = {wall(2.7)};
     b.regions = {wall(2.72)};
-    const PlaneAgreement same = compare_planes(a, b, Pose::Identity(), {});
+    const PlaneAgreement same = compare_planes(a, b, Pose::Identity());
     EXPECT_GT(same.agree, 20);
     EXPECT_EQ(same.contradict, 0);
     b.regions = {wall(1.0, 0.3)};
-    const PlaneAgreement before = compare_planes(a, b, Pose::Identity(), {});
+    const PlaneAgreement before = compare_planes(a, b, Pose::Identity());
     EXPECT_EQ(before.agree, 0);
     EXPECT_GT(before.contradict, 20);
-    EXPECT_EQ(compare_planes(a, b, looking(Eigen::Vector3d::Zero(), M_PI), {}).contradict, 0)
-        << "out of view";
+    EXPECT_EQ(compare_planes(a, b, looking(Eigen::Vector3d::Zero(), M_PI)).contradict, 0) << "out of view";
 }
 
 TEST_F(ComparisonTest, PlanesAreComparedBothWaysAlike) {
@@ -54,8 +53,8 @@ TEST_F(ComparisonTest, PlanesAreComparedBothWaysAlike) {
     a.regions = {wall(2.7), wall(1.1, 0.2)};
     b.regions = {wall(2.4)};
     const Pose a_from_b = here_.inverse() * there_;
-    const PlaneAgreement one = compare_planes(a, b, a_from_b, {}),
-                         other = compare_planes(b, a, a_from_b.inverse(), {});
+    const PlaneAgreement one = compare_planes(a, b, a_from_b),
+                         other = compare_planes(b, a, a_from_b.inverse());
     EXPECT_EQ(one.agree, other.agree);
     EXPECT_EQ(one.contradict, other.contradict);
 }
@@ -88,7 +87,7 @@ TEST_F(ComparisonTest, EmptyViewsAgreeOnNothing) {
     for (const auto& [one, other] : {std::pair(&a, &none), std::pair(&none, &a), std::pair(&none, &none)}) {
         EXPECT_TRUE(match_at(*one, *other, Pose::Identity(), {}).empty());
         EXPECT_EQ(compare_points(*one, *other, Pose::Identity(), {}, 1).agree, 0);
-        EXPECT_EQ(compare_planes(*one, *other, Pose::Identity(), {}).agree, 0);
+        EXPECT_EQ(compare_planes(*one, *other, Pose::Identity()).agree, 0);
     }
 }
 

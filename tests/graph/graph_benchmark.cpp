@@ -162,7 +162,7 @@ Problem dense_problem(int count, Random& random) {
     for (const Keyframe& keyframe : building_walk(count, random, false).keyframes) {
         const int i = keyframe.id;
         problem.truth.push_back(building_pose(i));
-        problem.landmarks.add(i, keyframe.regions, problem.truth.back());
+        problem.landmarks.add(i, keyframe.regions, problem.truth.back(), keyframe.noise);
         problem.poses.push_back(problem.truth.back());
         if (i == 0) continue;
         problem.add_edge(i - 1, i, 0.006, 0.005, false, random);

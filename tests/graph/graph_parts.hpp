@@ -2,8 +2,8 @@
 // The parts of a graph without the graph: keyframes where they truly stand, tied by odometry.
 #pragma once
 
-#include "graph/graph_options.hpp"
 #include "graph/keyframes.hpp"
+#include "graph/options.hpp"
 #include "graph/synthetic.hpp"
 #include "graph/topology.hpp"
 

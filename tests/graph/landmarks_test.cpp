@@ -27,6 +27,7 @@ PlanarRegion rectangle(const Pose& world_from_camera, const Eigen::Vector3d& cen
     return region;
 }
 
+const DepthNoise kNoise;
 const Eigen::Vector3d kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1);
 
 PlanarRegion floor_seen(const Pose& world_from_camera, double height = -1) {
@@ -37,7 +38,7 @@ TEST(Landmarks, AFloorSeenAgainIsTheSameLandmark) {
     Landmarks landmarks({});
     for (int node = 0; node < 3; ++node) {
         const Pose pose = make_pose({0.1 * node, 0, 0.01 * node}, Eigen::Quaterniond(1, 0.005 * node, 0, 0));
-        EXPECT_LT(landmarks.add(node, {floor_seen(Pose::Identity())}, pose), node == 0 ? 1e-9 : 10.0);
+        EXPECT_LT(landmarks.add(node, {floor_seen(Pose::Identity())}, pose, kNoise), node == 0 ? 1e-9 : 10.0);
     }
     ASSERT_EQ(landmarks.landmarks().size(), 1u);
     EXPECT_EQ(landmarks.shared().size(), 3u);
@@ -46,14 +47,14 @@ TEST(Landmarks, AFloorSeenAgainIsTheSameLandmark) {
 TEST(Landmarks, OtherPlanesAreOtherLandmarks) {
     Landmarks landmarks({});
     const Pose eye = Pose::Identity();
-    landmarks.add(0, {floor_seen(eye)}, eye);
-    landmarks.add(1, {floor_seen(eye, -1.1)}, eye);  // a step of 10 cm
-    landmarks.add(2, {rectangle(eye, {0, 0, 1}, 1.5 * kX, 1.0 * kY)},
-                  eye);  // the ceiling: faces the other way
-    landmarks.add(3, {rectangle(eye, {6, 0, -1}, 1.5 * kX, 1.0 * kY)},
-                  eye);  // level with the floor, elsewhere
-    landmarks.add(4, {rectangle(eye, {0, 2, 0}, 1.5 * kX, 1.0 * kZ)}, eye);    // a wall
-    landmarks.add(5, {rectangle(eye, {0, 2, 0.5}, 0.1 * kX, 0.1 * kZ)}, eye);  // too small
+    landmarks.add(0, {floor_seen(eye)}, eye, kNoise);
+    landmarks.add(1, {floor_seen(eye, -1.1)}, eye, kNoise);  // a step of 10 cm
+    landmarks.add(2, {rectangle(eye, {0, 0, 1}, 1.5 * kX, 1.0 * kY)}, eye,
+                  kNoise);  // the ceiling: faces the other way
+    landmarks.add(3, {rectangle(eye, {6, 0, -1}, 1.5 * kX, 1.0 * kY)}, eye,
+                  kNoise);  // level with the floor, elsewhere
+    landmarks.add(4, {rectangle(eye, {0, 2, 0}, 1.5 * kX, 1.0 * kZ)}, eye, kNoise);    // a wall
+    landmarks.add(5, {rectangle(eye, {0, 2, 0.5}, 0.1 * kX, 0.1 * kZ)}, eye, kNoise);  // too small
     EXPECT_EQ(landmarks.landmarks().size(), 5u);
     EXPECT_TRUE(landmarks.shared().empty());
 }
@@ -61,9 +62,9 @@ TEST(Landmarks, OtherPlanesAreOtherLandmarks) {
 TEST(Landmarks, ARegionThatFitsTwoIsLeftOut) {
     Landmarks landmarks({});
     const Pose eye = Pose::Identity();
-    landmarks.add(0, {floor_seen(eye, -1.0)}, eye);
-    landmarks.add(0, {floor_seen(eye, -1.08)}, eye);
-    landmarks.add(1, {floor_seen(eye, -1.04)}, eye);
+    landmarks.add(0, {floor_seen(eye, -1.0)}, eye, kNoise);
+    landmarks.add(0, {floor_seen(eye, -1.08)}, eye, kNoise);
+    landmarks.add(1, {floor_seen(eye, -1.04)}, eye, kNoise);
     EXPECT_EQ(landmarks.landmarks().size(), 2u);
     EXPECT_TRUE(landmarks.shared().empty());
 }
@@ -71,8 +72,8 @@ TEST(Landmarks, ARegionThatFitsTwoIsLeftOut) {
 TEST(Landmarks, MergeJoinsWhatCoincidesAfterTheGraphMoved) {
     Landmarks landmarks({});
     const Pose eye = Pose::Identity();
-    landmarks.add(0, {floor_seen(eye)}, eye);
-    landmarks.add(1, {floor_seen(eye)}, make_pose({0, 0, 0.2}, Eigen::Quaterniond::Identity()));
+    landmarks.add(0, {floor_seen(eye)}, eye, kNoise);
+    landmarks.add(1, {floor_seen(eye)}, make_pose({0, 0, 0.2}, Eigen::Quaterniond::Identity()), kNoise);
     ASSERT_EQ(landmarks.landmarks().size(), 2u);
     std::vector<Landmark> optimised = landmarks.landmarks();
     optimised[1].plane = optimised[0].plane;
@@ -80,7 +81,7 @@ TEST(Landmarks, MergeJoinsWhatCoincidesAfterTheGraphMoved) {
     landmarks.merge();
     EXPECT_EQ(landmarks.shared().size(), 2u);
     for (const Sighting& sighting : landmarks.shared()) EXPECT_EQ(sighting.landmark, 0);
-    landmarks.add(2, {floor_seen(eye)}, eye);
+    landmarks.add(2, {floor_seen(eye)}, eye, kNoise);
     EXPECT_EQ(landmarks.shared().back().landmark, 0) << "the newer one takes no more part";
 }
 
@@ -89,9 +90,9 @@ TEST(Landmarks, ANodeThatGoesLeavesWhatItSawToItsKeeper) {
     const Pose eye = Pose::Identity();
     const Pose aside = make_pose({1, 0, 0}, Eigen::Quaterniond::Identity());
     const auto wall = [](const Pose& pose) { return rectangle(pose, {0, 2, 0}, 1.5 * kX, 1.0 * kZ); };
-    landmarks.add(0, {floor_seen(eye)}, eye);
-    landmarks.add(1, {floor_seen(eye), wall(eye)}, eye);
-    landmarks.add(2, {floor_seen(aside), wall(aside)}, aside);
+    landmarks.add(0, {floor_seen(eye)}, eye, kNoise);
+    landmarks.add(1, {floor_seen(eye), wall(eye)}, eye, kNoise);
+    landmarks.add(2, {floor_seen(aside), wall(aside)}, aside, kNoise);
     ASSERT_EQ(landmarks.shared().size(), 5u);
     // Node 1 goes, node 0 keeps: it has seen the floor itself, and now stands for the view of the wall.
     landmarks.hand_over(1, 0, Pose::Identity());
@@ -103,7 +104,7 @@ TEST(Landmarks, ANodeThatGoesLeavesWhatItSawToItsKeeper) {
         EXPECT_LT(sighting_error(sighting, sighting.node == 0 ? eye : aside, plane).norm(), 1e-6);
     }
     // Nobody else sees what the last one saw: the landmark stays as long as its keeper does.
-    landmarks.add(2, {rectangle(eye, {6, 0, -1}, 1.5 * kX, 1.0 * kY)}, eye);
+    landmarks.add(2, {rectangle(eye, {6, 0, -1}, 1.5 * kX, 1.0 * kY)}, eye, kNoise);
     EXPECT_EQ(landmarks.landmarks().size(), 3u);
     landmarks.hand_over(2, 1, aside.inverse());
     EXPECT_EQ(landmarks.landmarks().size(), 3u);
@@ -111,7 +112,7 @@ TEST(Landmarks, ANodeThatGoesLeavesWhatItSawToItsKeeper) {
 
 TEST(Landmarks, NothingComesOfRegionsWithoutAPlane) {
     Landmarks landmarks({});
-    EXPECT_EQ(landmarks.add(0, {PlanarRegion{}}, Pose::Identity()), 0);
+    EXPECT_EQ(landmarks.add(0, {PlanarRegion{}}, Pose::Identity(), kNoise), 0);
     EXPECT_TRUE(landmarks.landmarks().empty());
 }
 
@@ -123,7 +124,7 @@ TEST(Landmarks, ASharedFloorStopsDrift) {
     Pose odometry = Pose::Identity();
     std::vector<PoseEdge> edges;
     Landmarks landmarks({});
-    landmarks.add(0, {floor_seen(truth[0])}, truth[0]);
+    landmarks.add(0, {floor_seen(truth[0])}, truth[0], kNoise);
     for (int node = 1; node < 30; ++node) {
         Twist step = Twist::Zero(), error;
         step[0] = 0.05;
@@ -133,7 +134,7 @@ TEST(Landmarks, ASharedFloorStopsDrift) {
         drifting.push_back(drifting.back() * measured);
         odometry = odometry * measured;
         edges.push_back({node - 1, node, measured, Matrix6d::Identity() / 0.01, false});
-        landmarks.add(node, {floor_seen(truth.back())}, drifting.back());
+        landmarks.add(node, {floor_seen(truth.back())}, drifting.back(), kNoise);
         std::vector<Landmark> optimised = landmarks.landmarks();
         optimise(drifting, edges, 0, {}, &optimised, landmarks.shared());
         landmarks.follow(optimised, {});
@@ -160,7 +161,7 @@ TEST(Landmarks, AWrongSightingIsLetGo) {
     for (int node = 0; node < 5; ++node) {
         if (node > 0) edges.push_back({node - 1, node, Pose::Identity(), Matrix6d::Identity() / 0.01, false});
         landmarks.add(node, {floor_seen(poses[static_cast<std::size_t>(node)])},
-                      poses[static_cast<std::size_t>(node)]);
+                      poses[static_cast<std::size_t>(node)], kNoise);
     }
     std::vector<Sighting> sightings = landmarks.shared();
     for (auto& p : sightings[2].points_camera) p.z() += 0.5;

@@ -90,6 +90,30 @@ void expect_identical(const PlaneMap& a, const PlaneMap& b) {
     for (std::size_t i = 0; i < a.points.size(); ++i) EXPECT_EQ(a.points[i].position, b.points[i].position);
 }
 
+TEST(PlaneMapper, TheNoiserTheSensorTheLessAFarViewWeighs) {
+    // A wall from 1 m, and from 4 m, where it seems to lie 1 cm further back.
+    const auto distance_of_wall = [](const DepthNoise& noise) {
+        PlaneMapper mapper;
+        for (const double away : {0.0, 3.0}) {
+            Pose world_from_camera = Pose::Identity();
+            world_from_camera.translation().z() = -away;
+            const Rectangle wall{facing({0, 0, away > 0 ? 1.01 : 1.0}, {0, 0, -1}, {1, 0, 0}), 0.8, 0.7, {}};
+            Keyframe seen;
+            seen.id = away > 0 ? 1 : 0;
+            seen.utime = seen.id;
+            seen.noise = noise;
+            seen.regions = {region_of(wall, world_from_camera, 0.02)};
+            mapper.add(seen, world_from_camera);
+        }
+        mapper.settle();
+        EXPECT_EQ(mapper.map().planes.size(), 1u);
+        return mapper.map().planes.empty() ? 0 : mapper.map().planes[0].plane().d;
+    };
+    const DepthNoise noise, twice{2 * noise.base_m, 2 * noise.quadratic_per_m, noise.offset_m};
+    EXPECT_GT(distance_of_wall(noise), 1.0005);
+    EXPECT_LT(distance_of_wall(twice), distance_of_wall(noise) - 0.0003);
+}
+
 TEST(PlaneMapper, MergedPlaneIsTheFitToAllPoints) {
     const Rectangle left{facing({-0.8, 0, 3}, {0, 0, -1}, {1, 0, 0}), 1, 1, {}};
     const Rectangle right{facing({0.7, 0.2, 3.01}, {0.01, 0, -1}, {1, 0, 0}), 0.8, 0.7, {}};
@@ -97,10 +121,10 @@ TEST(PlaneMapper, MergedPlaneIsTheFitToAllPoints) {
     seen.id = 0;
     seen.regions = {region_of(left, Pose::Identity(), 0.02, 0.003, 1),
                     region_of(right, Pose::Identity(), 0.02, 0.003, 2)};
+    seen.noise = {0, 0, 0};
     // Both count alike, whatever their depth, when poses are off by far more than the sensor, and the planes
     // by far less than that.
     MapOptions options;
-    options.noise = {0, 0, 0};
     options.pose_sigma_m = 10;
     options.agreement_m = 100;
     PlaneMapper mapper(options);

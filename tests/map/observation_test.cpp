@@ -17,30 +17,31 @@ StoredRegion seen_at(double depth) {
 
 TEST(ObservationModel, AFartherRegionCountsLess) {
     const ObservationModel model;
+    const DepthNoise noise;
     double weight = 1.1, sigma = 0;
     int strength = 3;
     for (const double depth : {0.6, 1.0, 2.0, 3.0, 5.0, 8.0}) {
         const StoredRegion region = seen_at(depth);
-        EXPECT_LT(model.weight(region), weight);
-        EXPECT_GT(model.weight(region), 0);
-        EXPECT_GT(model.reliability(region).sigma_m, sigma);
-        EXPECT_LE(model.strength(region), strength);
-        weight = model.weight(region);
-        sigma = model.reliability(region).sigma_m;
-        strength = model.strength(region);
-        EXPECT_EQ(model.reliability(region).weight, weight);
+        EXPECT_LT(model.weight(region, noise), weight);
+        EXPECT_GT(model.weight(region, noise), 0);
+        EXPECT_GT(model.reliability(region, noise).sigma_m, sigma);
+        EXPECT_LE(model.strength(region, noise), strength);
+        weight = model.weight(region, noise);
+        sigma = model.reliability(region, noise).sigma_m;
+        strength = model.strength(region, noise);
+        EXPECT_EQ(model.reliability(region, noise).weight, weight);
     }
-    EXPECT_EQ(model.strength(seen_at(0.6)), 2);
+    EXPECT_EQ(model.strength(seen_at(0.6), noise), 2);
     EXPECT_EQ(strength, 0);
 }
 
 TEST(ObservationModel, WithoutNoiseAllCountAlike) {
-    ObservationModel model;
-    model.noise = {0, 0, 0};
+    const ObservationModel model;
+    const DepthNoise none{0, 0, 0};
     for (const double depth : {0.5, 8.0}) {
-        EXPECT_EQ(model.weight(seen_at(depth)), 1);
-        EXPECT_EQ(model.reliability(seen_at(depth)).sigma_m, model.agreement_m);
-        EXPECT_EQ(model.strength(seen_at(depth)), 2);
+        EXPECT_EQ(model.weight(seen_at(depth), none), 1);
+        EXPECT_EQ(model.reliability(seen_at(depth), none).sigma_m, model.agreement_m);
+        EXPECT_EQ(model.strength(seen_at(depth), none), 2);
     }
 }
 

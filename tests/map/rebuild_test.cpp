@@ -35,7 +35,7 @@ struct World {
         PlaneSet planes(kRules, 200);
         Rebuild rebuild(store, folded, ids, joiner.model());
         rebuild.join(planes, joiner);
-        rebuild.draw(planes, joiner, FreeSpace({}, 0.05), threads);
+        rebuild.draw(planes, joiner, FreeSpace(0.05), threads);
         rebuild.carry_over_ids(planes);
         return planes;
     }

@@ -75,6 +75,14 @@ TEST(Bus, MessagesPublishedInAHandlerArrive) {
     EXPECT_EQ(echoes, 1);
 }
 
+TEST(Bus, EachHasASessionButInOneProcess) {
+    const std::string url = "udpm://239.255.76.67:7667?ttl=0";
+    const Bus one(url), other(url), alone("memq://");
+    EXPECT_NE(one.session(), 0);
+    EXPECT_NE(one.session(), other.session());
+    EXPECT_EQ(alone.session(), 0);
+}
+
 TEST(Bus, UdpmGetsAReceiveBuffer) {
     EXPECT_NE(Bus("udpm://239.255.76.67:7667?ttl=0").url().find("&recv_buf_size=4194304"), std::string::npos);
 }

@@ -78,6 +78,11 @@ TEST(Convert, KeyframeRoundTrip) {
     EXPECT_EQ(back.pose_utime, keyframe.pose_utime);
     EXPECT_TRUE(back.odom_from_camera.isApprox(keyframe.odom_from_camera, 1e-12));
     EXPECT_EQ(back.covariance, keyframe.covariance);
+    EXPECT_EQ(to_message(keyframe, 1).session, 0);
+    EXPECT_EQ(to_message(keyframe, 1, 9).session, 9);
+    EXPECT_EQ(back.noise, keyframe.noise);
+    EXPECT_EQ(back.depth_min_m, keyframe.depth_min_m);
+    EXPECT_EQ(back.depth_max_m, keyframe.depth_max_m);
     ASSERT_EQ(back.features.size(), keyframe.features.size());
     for (std::size_t i = 0; i < back.features.size(); ++i) {
         EXPECT_EQ(back.features[i].pixel, keyframe.features[i].pixel);
@@ -110,6 +115,11 @@ TEST(Convert, InconsistentMessagesAreErrors) {
     refused([](keyframe_t& m) { m.regions[0].ring_sizes[0] = 2; });
     refused([](keyframe_t& m) { m.regions[0].vertices[0][0] = std::nanf(""); });
     refused([](keyframe_t& m) { m.regions[0].half_extents[0] = -1; });
+    refused([](keyframe_t& m) { m.noise_base_m = -0.001; });
+    refused([](keyframe_t& m) { m.noise_base_m = kNan; });
+    refused([](keyframe_t& m) { m.noise_quadratic_per_m = std::numeric_limits<double>::infinity(); });
+    refused([](keyframe_t& m) { m.noise_offset_m = 1e9; });
+    refused([](keyframe_t& m) { m.depth_max_m = m.depth_min_m; });
 }
 
 /// Whether a message with each of its stamps at both ends of the range is refused by the stamp's name.

@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "core/files.hpp"
-#include "temporary_folder.hpp"
 #include "core/version.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap {
 namespace {
@@ -31,19 +31,24 @@ struct Options {
     bool operator==(const Options&) const = default;
 };
 
+OptionList options_of(Options& options) {
+    OptionList list("Map");
+    list.add("method", options.method, {"cells", "ransac"}, "which");
+    list.add("merge_distance_m", options.merge_distance_m, {0, 10}, "largest distance");
+    list.add("max_points", options.max_points, kAnyNumber, "at most", Audience::kExpert);
+    list.add("seed", options.seed, kAnyNumber, "of the random numbers", Audience::kExpert);
+    list.add("color", options.color, {"jpeg", "raw"}, "how");
+    return list;
+}
+
 void add_flags(Flags& flags, Options& options) {
     flags.add_positional("input", options.input, "what to read");
     flags.add("o,output", options.output, "folder\nfor the results");
     flags.required();
     flags.add("q,quiet", options.quiet, "say nothing");
-    flags.section("Map", "map-");
-    flags.add("method", options.method, "which");
-    flags.add("merge-distance-m", options.merge_distance_m, "largest distance, metres");
-    flags.add("max-points", options.max_points, "at most");
-    flags.add("seed", options.seed, "of the random numbers");
-    flags.add("delta", options.delta, "one more");
-    flags.add("other-seed", options.other_seed, "another");
-    flags.add_choice("color", options.color, {"jpeg", "raw"}, "how");
+    flags.add("map-delta", options.delta, "one more");
+    flags.add("map-other-seed", options.other_seed, "another");
+    flags.add(options_of(options), "map-");
 }
 
 struct Outcome {
@@ -95,6 +100,25 @@ TEST(Flags, Version) {
     EXPECT_EQ(outcome.code, 0);
     EXPECT_EQ(outcome.out, std::string("planemap-test ") + version() + "\n");
     EXPECT_THAT(version(), testing::MatchesRegex("[0-9]+\\.[0-9]+\\.[0-9]+"));
+}
+
+TEST(Flags, HelpShowsUsersTheirOptionsAndHelpAllAllOfThem) {
+    const Outcome help = parse({"--help"}), all = parse({"--help-all", "in"});
+    EXPECT_EQ(help.code, 0);
+    EXPECT_EQ(all.code, 0) << all.err;
+    for (const std::string& text : {help.out, all.out}) {
+        EXPECT_THAT(text, HasSubstr("--map-merge-distance-m"));
+        EXPECT_THAT(text, HasSubstr("=0.05"));
+        EXPECT_THAT(text, HasSubstr("largest distance [0 to 10 m]"));
+        EXPECT_THAT(text, HasSubstr("\nMap:\n"));
+    }
+    for (const char* seldom : {"--map-max-points", "--map-seed"}) {
+        EXPECT_THAT(help.out, Not(HasSubstr(seldom)));
+        EXPECT_THAT(all.out, HasSubstr(seldom));
+    }
+    EXPECT_THAT(help.out, HasSubstr("--help-all lists more options"));
+    expect_error({"in", "-o", "x", "--map-max-pionts", "1"}, HasSubstr("--map-max-points?"));
+    expect_error({"in", "-o", "x", "--map-method", "magic"}, HasSubstr("magic"));
 }
 
 TEST(Flags, DumpedConfigReadsBack) {

@@ -41,6 +41,9 @@ inline Keyframe sample_keyframe() {
     keyframe.odom_from_camera = make_pose({1, 2, 3}, Eigen::Quaterniond(0.9, 0.1, 0.2, 0.3));
     keyframe.previous_from_camera = make_pose({0.1, 0, 0}, Eigen::Quaterniond(1, 0.01, 0, 0));
     keyframe.covariance = Matrix6d::Identity() * 1e-4;
+    keyframe.noise = {0.002, 0.003, 0.5};
+    keyframe.depth_min_m = 0.5;
+    keyframe.depth_max_m = 4;
     for (int i = 0; i < 5; ++i) {
         Feature feature;
         feature.pixel = {10.0f * static_cast<float>(i), 20};

@@ -14,7 +14,7 @@ class Admission : public testing::Test {
   protected:
     bool admits(std::int32_t seq, std::uint8_t sender = 0) {
         const std::vector<std::uint8_t> bytes{static_cast<std::uint8_t>(seq), sender};
-        return guard_.admits(seq, 1000000 + 500000 * std::int64_t{seq} + sender, bytes);
+        return guard_.admits(0, seq, 1000000 + 500000 * std::int64_t{seq} + sender, bytes);
     }
     ModuleStatus status_{"graph"};
     StreamGuard guard_{"PLANEMAP_KEYFRAME", "keyframes", status_};
@@ -23,10 +23,10 @@ class Admission : public testing::Test {
 TEST_F(Admission, ARepeatedMessageIsNotUsedAndNoLossBesideTheMainStream) {
     StreamGuard trajectories("PLANEMAP_TRAJECTORY", "trajectories", status_, false);
     const std::vector<std::uint8_t> bytes{1}, more{2};
-    EXPECT_TRUE(trajectories.admits(0, std::nullopt, bytes));
-    EXPECT_FALSE(trajectories.admits(0, std::nullopt, bytes));
-    EXPECT_FALSE(trajectories.admits(0, std::nullopt, bytes));
-    EXPECT_TRUE(trajectories.admits(1, std::nullopt, more));
+    EXPECT_TRUE(trajectories.admits(0, 0, std::nullopt, bytes));
+    EXPECT_FALSE(trajectories.admits(0, 0, std::nullopt, bytes));
+    EXPECT_FALSE(trajectories.admits(0, 0, std::nullopt, bytes));
+    EXPECT_TRUE(trajectories.admits(0, 1, std::nullopt, more));
     EXPECT_EQ(test::told(status_).received, 0) << "not the main stream";
     EXPECT_EQ(status_.dropped_count(), 0);
     EXPECT_TRUE(status_.losses().empty());
@@ -47,6 +47,25 @@ TEST_F(Admission, WhatAnotherSenderSaysIsCountedAndNamed) {
     EXPECT_EQ(status_.losses().at("keyframes of another sender"), 9);
     EXPECT_EQ(status_.losses().at("keyframes from before those that came"), 1);
     EXPECT_EQ(status_.dropped_count(), 10);
+}
+
+TEST_F(Admission, SessionsTellTwoSendersOfTheSameNumbersAndTimesApart) {
+    for (int i = 0; i < 10; ++i) {
+        const std::vector<std::uint8_t> bytes{static_cast<std::uint8_t>(i)};
+        const std::int64_t utime = 1000000 + 500000 * std::int64_t{i};
+        EXPECT_TRUE(guard_.admits(7, i, utime, bytes));
+        EXPECT_FALSE(guard_.admits(8, i, utime, bytes)) << "the first one lives";
+        EXPECT_FALSE(guard_.admits(0, i, utime, bytes)) << "one that does not say";
+    }
+    EXPECT_EQ(status_.losses().at("keyframes of another sender"), 20);
+    EXPECT_EQ(test::told(status_).received, 10);
+    // The first one is gone.
+    int admitted = 0;
+    for (int i = 10; i < 20; ++i) {
+        const std::vector<std::uint8_t> bytes{static_cast<std::uint8_t>(i)};
+        admitted += guard_.admits(8, i, 1000000 + 500000 * std::int64_t{i}, bytes);
+    }
+    EXPECT_GE(admitted, 5);
 }
 
 TEST_F(Admission, ALateOneIsAdmitted) {

@@ -50,6 +50,17 @@ void expect_near(const Pose& a, const Pose& b, double metres, double radians) {
     EXPECT_LT(rotation_angle(a.inverse() * b), radians);
 }
 
+TEST_F(Room, KeyframesSayHowTheirSensorMeasures) {
+    camera_.noise = {0.002, 0.003, 0.5};
+    camera_.depth_min_m = 0.25;
+    camera_.depth_max_m = 7;
+    const OdometryResult result = feed(view(0), 1000);
+    ASSERT_TRUE(result.keyframe);
+    EXPECT_EQ(result.keyframe->noise, camera_.noise);
+    EXPECT_EQ(result.keyframe->depth_min_m, 0.25);
+    EXPECT_EQ(result.keyframe->depth_max_m, 7);
+}
+
 TEST_F(Room, FirstFrameIsKeyframeZeroAtTheIdentity) {
     const OdometryResult result = feed(view(0), 1000);
     EXPECT_EQ(result.estimate.status, TrackingStatus::kTracked);

@@ -10,8 +10,8 @@
 #include "core/files.hpp"
 #include "segment/small_scene.hpp"
 #include "sensor/png.hpp"
-#include "temporary_folder.hpp"
 #include "sensor/test_images.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap {
 namespace {
@@ -150,7 +150,8 @@ TEST_F(SegmentImages, ABadCameraIsNamedByField) {
     bad.depth.fx = 0;
     bad.depth.cy = std::numeric_limits<double>::quiet_NaN();
     options.images = {image};
-    EXPECT_THAT(test::error_of([&] { segment_images(options, bad); }), AllOf(HasSubstr("fx"), HasSubstr("cy")));
+    EXPECT_THAT(test::error_of([&] { segment_images(options, bad); }),
+                AllOf(HasSubstr("fx"), HasSubstr("cy")));
 }
 
 TEST(TakeFiles, TellsFilesFromFlagsAndTheirValues) {

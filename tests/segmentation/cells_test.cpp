@@ -327,10 +327,10 @@ TEST(CellsTest, RefusesBadOptions) {
     options.thickness_m = 0;
     EXPECT_THROW(make_cell_segmenter(options), std::invalid_argument);
     options = {};
-    options.min_fill = std::nan("");
+    options.min_region_fraction = std::nan("");
     EXPECT_THROW(make_cell_segmenter(options), std::invalid_argument);
     options = {};
-    options.lateral_px = -1;
+    options.grow_sigmas = -1;
     EXPECT_THROW(make_cell_segmenter(options), std::invalid_argument);
     options = {};
     options.merge_angle_deg = 90;

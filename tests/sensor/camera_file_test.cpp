@@ -92,7 +92,8 @@ TEST(CameraFile, UnregisteredNeedsBothCamerasAndTheTransform) {
 
 TEST(CameraFile, WhatIsNotJsonIsNamedWithAnExample) {
     for (const char* text : {"", "{", "[1, 2]", "\xfe", "nonsense"}) {
-        EXPECT_THAT(test::error_of([&] { read(text); }), AllOf(HasSubstr("camera.json"), HasSubstr("depth_camera")))
+        EXPECT_THAT(test::error_of([&] { read(text); }),
+                    AllOf(HasSubstr("camera.json"), HasSubstr("depth_camera")))
             << text;
     }
 }
@@ -185,7 +186,8 @@ TEST(CameraFile, MistypedFocalLengthsAreRefused) {
 TEST(CameraFile, SyntaxErrorsHaveLineAndColumn) {
     EXPECT_THAT(test::error_of([] { read("{\n \"depth_camera\": {,}\n}"); }),
                 HasSubstr("camera.json: line 2, column 19: syntax error"));
-    EXPECT_THAT(test::error_of([] { read(with("\"depth_units_per_metre\": 5000")); }), HasSubstr("stands twice"));
+    EXPECT_THAT(test::error_of([] { read(with("\"depth_units_per_metre\": 5000")); }),
+                HasSubstr("stands twice"));
 }
 
 TEST(CameraFile, APresetGivesRangeAndNoise) {

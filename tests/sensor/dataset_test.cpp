@@ -6,8 +6,8 @@
 
 #include <cstdlib>
 
-#include "temporary_folder.hpp"
 #include "sensor/test_images.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap {
 namespace {
@@ -240,7 +240,8 @@ TEST(Dataset, WhatToDoIsSaid) {
                 AllOf(HasSubstr("x.lcmlog: not a folder but an LCM log"), HasSubstr("planemap-run"),
                       HasSubstr("lcm-logplayer")));
     const auto list = folder.write("in/depth.txt", "1 depth/1.png\n");
-    EXPECT_THAT(test::error_of([&] { open_source(list.string()); }), HasSubstr("give the folder that it lies in"));
+    EXPECT_THAT(test::error_of([&] { open_source(list.string()); }),
+                HasSubstr("give the folder that it lies in"));
     EXPECT_THAT(test::error_of([&] { open_source(folder.write("a.bag", "#ROSBAG V2.0").string()); }),
                 HasSubstr("not a folder; give one with"));
     EXPECT_THAT(test::error_of([&] { open_source(folder.path().string()); }), HasSubstr("/in is one"));

@@ -4,8 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "temporary_folder.hpp"
 #include "sensor/test_images.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap {
 namespace {
@@ -28,7 +28,8 @@ TEST(Jpeg, WrongSizeAndOtherFilesAreNamed) {
 TEST(Jpeg, EveryTruncationIsAnError) {
     const std::string jpeg = encode_jpeg(48, 32);
     for (std::size_t size = 0; size < jpeg.size(); ++size) {
-        EXPECT_NE(test::error_of([&] { check_jpeg(std::string_view(jpeg).substr(0, size), 48, 32); }), "") << size;
+        EXPECT_NE(test::error_of([&] { check_jpeg(std::string_view(jpeg).substr(0, size), 48, 32); }), "")
+            << size;
     }
 }
 

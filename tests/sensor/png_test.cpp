@@ -7,8 +7,8 @@
 #include <random>
 
 #include "core/files.hpp"
-#include "temporary_folder.hpp"
 #include "sensor/test_images.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap {
 namespace {
@@ -72,7 +72,8 @@ TEST(Png, EveryTruncationIsAnError) {
     const std::string png = encode_depth_png(numbered_depth(16, 12));
     constexpr std::size_t kChecksum = 4;  // the end marker's may be missing
     for (std::size_t size = 0; size < png.size() - kChecksum; ++size) {
-        EXPECT_NE(test::error_of([&] { decode_depth_png(std::string_view(png).substr(0, size), 16, 12); }), "")
+        EXPECT_NE(test::error_of([&] { decode_depth_png(std::string_view(png).substr(0, size), 16, 12); }),
+                  "")
             << size;
     }
 }

@@ -4,8 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "temporary_folder.hpp"
 #include "simulator/simulated_source.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap {
 namespace {

@@ -169,7 +169,8 @@ TEST(SimulatorParameters, LightSpeedAndVisitsDoWhatTheySay) {
     const SimulatedSource few(parse_simulator_name("sim:office?width=160&height=120&visits=3")),
         many(parse_simulator_name("sim:office?width=160&height=120&visits=6"));
     EXPECT_GT(*many.size(), *few.size() + 60);
-    EXPECT_THAT(test::error_of([] { small("wall?visits=3&"); }), AllOf(HasSubstr("visits"), HasSubstr("wall")));
+    EXPECT_THAT(test::error_of([] { small("wall?visits=3&"); }),
+                AllOf(HasSubstr("visits"), HasSubstr("wall")));
     EXPECT_THAT(test::error_of([] { parse_simulator_name("sim:office?light=2&speed=0&turn=0&visits=-1"); }),
                 AllOf(HasSubstr("light"), HasSubstr("speed"), HasSubstr("turn"), HasSubstr("visits")));
 }

@@ -7,10 +7,10 @@
 #include <filesystem>
 
 #include "core/files.hpp"
-#include "temporary_folder.hpp"
 #include "messages/channels.hpp"
 #include "messages/convert.hpp"
 #include "messages/log.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap {
 namespace {

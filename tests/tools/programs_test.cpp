@@ -97,6 +97,31 @@ TEST_F(ProgramsTest, DumpTheirOptionsWithTheRightUnits) {
     }
 }
 
+TEST_F(ProgramsTest, HelpIsShortAndHelpAllWhole) {
+    const std::string help = run("planemap-run", "--help").out, all = run("planemap-run", "--help-all").out;
+    const auto flags = [](const std::string& text) {
+        std::istringstream lines(text);
+        int count = 0;
+        for (std::string line; std::getline(lines, line);) count += line.starts_with("  -");
+        return count;
+    };
+    EXPECT_LE(flags(help), 60);
+    EXPECT_GT(flags(all), flags(help));
+    for (const char* flag : {"--poses", "--map ", "--camera", "--seed", "--frames", "--no-octomap", "--quiet",
+                             "--output", "--config", "--map-merge-distance-m", "--map-merge-gap-m",
+                             "--odometry-method", "--segmentation-method", "--graph-max-alike"})
+        EXPECT_THAT(help, HasSubstr(flag));
+    std::istringstream dumped(run("planemap-run", "--dump-config").out);
+    for (std::string line; std::getline(dumped, line);) {
+        std::string name = line.substr(0, line.find(" ="));
+        if (name.starts_with("# ")) name.erase(0, 2);
+        if (name.empty() || name.find(' ') != std::string::npos || name == "input" || name == line) continue;
+        EXPECT_THAT(all, HasSubstr("--" + name)) << line;
+    }
+    expect_error("planemap-run", "sim:office --output " + path("x") + " --odometry-flow-levels 3",
+                 "unknown flag --odometry-flow-levels");
+}
+
 TEST_F(ProgramsTest, ADumpedConfigGivesTheSameRun) {
     const std::string flags =
         "'sim:office?frames=4&width=160&height=120' --map-min-area-m2 0.3 --octomap-resolution-m 0.1 --seed "

@@ -96,10 +96,10 @@ void add_flags(Flags& flags, Arguments& arguments) {
     flags.add("no-octomap", arguments.no_octomap, "no OctoMap to compare with: faster");
     flags.add("v,verbose", arguments.verbose, "list every true plane");
     flags.add("q,quiet", arguments.quiet, "no progress on stderr");
-    planemap::add_flags(flags, arguments.pipeline.segmentation, "segmentation-");
-    planemap::add_flags(flags, arguments.pipeline.odometry, "odometry-");
-    planemap::add_flags(flags, arguments.pipeline.graph, "graph-");
-    planemap::map::add_flags(flags, arguments.pipeline.map.map, "map-");
+    flags.add(options_of(arguments.pipeline.segmentation), "segmentation-");
+    flags.add(options_of(arguments.pipeline.odometry), "odometry-");
+    flags.add(options_of(arguments.pipeline.graph), "graph-");
+    flags.add(options_of(arguments.pipeline.map.map), "map-");
 }
 
 /// Says on stderr how far a sequence is, every 100 frames.

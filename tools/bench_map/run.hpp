@@ -7,8 +7,8 @@
 #include <string>
 
 #include "map/map.hpp"
-#include "run/coverage.hpp"
 #include "pipeline/pipeline.hpp"
+#include "run/coverage.hpp"
 
 namespace planemap::bench_map {
 

@@ -90,9 +90,9 @@ void add_flags(Flags& flags, Arguments& arguments) {
         "table2", arguments.table2,
         "the paper's Table 2 instead: five places of an office visited again and again, and redkitchen");
     flags.add("q,quiet", options.quiet, "no progress on stderr");
-    planemap::add_flags(flags, options.pipeline.segmentation, "segmentation-");
-    planemap::add_flags(flags, options.pipeline.odometry, "odometry-");
-    planemap::add_flags(flags, options.pipeline.graph, "graph-");
+    flags.add(options_of(options.pipeline.segmentation), "segmentation-");
+    flags.add(options_of(options.pipeline.odometry), "odometry-");
+    flags.add(options_of(options.pipeline.graph), "graph-");
 }
 
 /// FOLDER/kt0.svg from sim:kt0.

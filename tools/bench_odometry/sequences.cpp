@@ -8,8 +8,8 @@
 #include "bench_odometry/child.hpp"
 #include "benchmark/choices.hpp"
 #include "results/result_folder.hpp"
-#include "simulator/simulated_source.hpp"
 #include "simulate/recording.hpp"
+#include "simulator/simulated_source.hpp"
 
 namespace planemap::bench_odometry {
 

@@ -52,7 +52,7 @@ std::vector<std::size_t> evenly_spread(std::size_t size, std::size_t count);
 
 /// A rendered Kinect's camera, and what it sees of a world. World frame of the simulator: z up.
 CameraInfo kinect_camera();
-BenchFrame render_frame(const simulator::World& world, const CameraInfo& camera, const Pose& world_from_camera,
-                        bool noise, std::uint64_t seed);
+BenchFrame render_frame(const simulator::World& world, const CameraInfo& camera,
+                        const Pose& world_from_camera, bool noise, std::uint64_t seed);
 
 }  // namespace planemap::bench

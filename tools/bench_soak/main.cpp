@@ -66,9 +66,9 @@ int main(int argc, char** argv) {
     flags.add("every", options.soak.every, "Frames a line");
     flags.add("period-s", options.soak.period_s, "Seconds between the stamps of two frames");
     flags.add("octomap", pipeline.with_octomap, "Build the OctoMap to compare with, too");
-    add_flags(flags, pipeline.odometry, "odometry-");
-    add_flags(flags, pipeline.graph, "graph-");
-    add_flags(flags, pipeline.map.map, "map-");
+    flags.add(options_of(pipeline.odometry), "odometry-");
+    flags.add(options_of(pipeline.graph), "graph-");
+    flags.add(options_of(pipeline.map.map), "map-");
     const int parsed = flags.parse(argc, argv);
     if (parsed >= 0) return parsed;
     planemap::start_logging("planemap-bench-soak", false);

@@ -19,8 +19,8 @@
 #include "messages/decode.hpp"
 #include "messages/frame_decoder.hpp"
 #include "messages/log.hpp"
-#include "simulator/simulated_source.hpp"
 #include "simulate/recording.hpp"
+#include "simulator/simulated_source.hpp"
 
 namespace planemap::bench_soak {
 

@@ -7,8 +7,8 @@
 #include <stdexcept>
 
 #include "evaluate/evaluation.hpp"
-#include "run/input.hpp"
 #include "pipeline/pipeline.hpp"
+#include "run/input.hpp"
 
 namespace planemap {
 

@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "core/camera.hpp"
+#include "core/frame_range.hpp"
 #include "core/histogram.hpp"
 #include "core/trajectory.hpp"
 #include "messages/bus.hpp"
 #include "results/result_folder.hpp"
-#include "core/frame_range.hpp"
 
 namespace planemap {
 

@@ -6,8 +6,8 @@
 #include <algorithm>
 
 #include "messages/module_status.hpp"
-#include "run/outputs.hpp"
 #include "pipeline/pipeline.hpp"
+#include "run/outputs.hpp"
 
 namespace planemap {
 

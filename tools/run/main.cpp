@@ -6,10 +6,10 @@
 
 #include "core/standard_output.hpp"
 #include "core/trajectory_file.hpp"
+#include "pipeline/pipeline.hpp"
 #include "run/input.hpp"
 #include "run/interim.hpp"
 #include "run/outputs.hpp"
-#include "pipeline/pipeline.hpp"
 #include "run/progress.hpp"
 #include "run/report.hpp"
 #include "run/run_info.hpp"
@@ -47,11 +47,11 @@ void add_run_flags(Flags& flags, RunOptions& options) {
     flags.add("no-octomap", options.no_octomap, "Do not build the OctoMap to compare with");
     flags.add("q,quiet", options.quiet, "No progress lines");
     flags.add("v,verbose", options.verbose, "Log more");
-    add_flags(flags, options.pipeline.segmentation, "segmentation-");
-    add_flags(flags, options.pipeline.odometry, "odometry-");
-    add_flags(flags, options.pipeline.graph, "graph-");
-    add_flags(flags, options.pipeline.map.map, "map-");
-    add_flags(flags, options.pipeline.octomap, "octomap-");
+    flags.add(options_of(options.pipeline.segmentation), "segmentation-");
+    flags.add(options_of(options.pipeline.odometry), "odometry-");
+    flags.add(options_of(options.pipeline.graph), "graph-");
+    flags.add(options_of(options.pipeline.map.map), "map-");
+    flags.add(options_of(options.pipeline.octomap), "octomap-");
 }
 
 /// Feeds the input to its end, or until a signal asks to stop. Returns the error that ended it early, if one

@@ -9,8 +9,8 @@
 #include <string>
 
 #include "messages/process.hpp"
-#include "run/input.hpp"
 #include "pipeline/pipeline.hpp"
+#include "run/input.hpp"
 
 namespace planemap {
 

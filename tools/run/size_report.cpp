@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "messages/convert.hpp"
-#include "run/coverage.hpp"
 #include "pipeline/pipeline.hpp"
+#include "run/coverage.hpp"
 #include "run/report_text.hpp"
 
 namespace planemap {

@@ -55,11 +55,12 @@ int main(int argc, char** argv) {
               "CPU time");
     flags.add("overlay", options.overlay, "write STEM.overlay.png, too: a picture to look at");
     flags.add("q,quiet", options.quiet, "no progress on stderr");
-    add_flags(flags, options.segmentation);
+    flags.add(options_of(options.segmentation));
 
     std::vector<std::string> arguments(argv + 1, argv + argc);
-    const std::vector<std::string> files =
-        take_files(arguments, {"--overlay", "-q", "--quiet", "-h", "--help", "--version", "--dump-config"});
+    const std::vector<std::string> files = take_files(
+        arguments,
+        {"--overlay", "-q", "--quiet", "-h", "--help", "--help-all", "--version", "--dump-config"});
     options.images.assign(files.begin(), files.end());
     std::vector<const char*> known{kProgram};
     for (const std::string& argument : arguments) known.push_back(argument.c_str());

@@ -12,8 +12,8 @@
 #include "messages/process.hpp"
 #include "results/result_folder.hpp"
 #include "sensor/sensor_shell.hpp"
-#include "simulator/simulated_source.hpp"
 #include "simulate/recording.hpp"
+#include "simulator/simulated_source.hpp"
 
 namespace planemap {
 namespace {
@@ -74,7 +74,8 @@ Simulated make_results(const std::string& world, const SensorShellOptions& optio
     Simulated simulated;
     simulated.total = source->size().value_or(0);
     results.make({kTruth, [&](const auto& file) { write_trajectory(file, source->ground_truth()); }});
-    results.make({kPlanes, [&](const auto& file) { simulator::write_planes_truth(file, source->world(), log); }});
+    results.make(
+        {kPlanes, [&](const auto& file) { simulator::write_planes_truth(file, source->world(), log); }});
     Bus bus("memq://");
     SensorShell sensor(bus, std::move(source), options);
     const auto show = [&](std::int64_t frames) {
@@ -133,7 +134,7 @@ int main(int argc, char** argv) {
     flags.add_positional("world", world, "Simulator name, see above; default: sim:office", false);
     flags.add("o,output", output, "The log to write");
     flags.required();
-    add_encoding_flags(flags, options);
+    flags.add(encoding_of(options));
     const int parsed = flags.parse(argc, argv);
     if (parsed >= 0) return parsed;
     options.speed = 0;  // as fast as it can be written
