@@ -90,7 +90,7 @@ void expect_identical(const PlaneMap& a, const PlaneMap& b) {
     for (std::size_t i = 0; i < a.points.size(); ++i) EXPECT_EQ(a.points[i].position, b.points[i].position);
 }
 
-TEST(PlaneMapper, TheNoiserTheSensorTheLessAFarViewWeighs) {
+TEST(PlaneMapper, TheNoisierTheSensorTheLessAFarViewWeighs) {
     // A wall from 1 m, and from 4 m, where it seems to lie 1 cm further back.
     const auto distance_of_wall = [](const DepthNoise& noise) {
         PlaneMapper mapper;
