@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
+#include "core/angle.hpp"
 #include "core/validation.hpp"
 
 namespace planemap {
@@ -55,7 +55,7 @@ bool OctomapBuilder::update(const KeyframeTrajectory& trajectory) {
         Keyframe& keyframe = found->second;
         const Pose change = keyframe.world_from_camera.inverse(Eigen::Isometry) * named.world_from_camera;
         if (change.translation().norm() <= options_.moved_m &&
-            rotation_angle(change) <= options_.moved_deg * std::numbers::pi / 180) {
+            rotation_angle(change) <= radians(options_.moved_deg)) {
             continue;
         }
         keyframe.world_from_camera = named.world_from_camera;

@@ -4,14 +4,16 @@
 
 #include <cstdint>
 #include <functional>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "benchmark/table.hpp"
 #include "run/pipeline.hpp"
 
 namespace planemap::bench_map {
+
+using benchmark::Json;
 
 /// What there is after so many frames.
 struct GrowthPoint {
@@ -42,6 +44,6 @@ Growth measure_growth(const std::string& simulator_name, std::int64_t frames, Pi
                       const std::function<void(std::int64_t)>& on_frame);
 
 std::string growth_table(const Growth& growth);
-nlohmann::ordered_json to_json(const std::string& sequence, const Growth& growth);
+Json to_json(const std::string& sequence, const Growth& growth);
 
 }  // namespace planemap::bench_map

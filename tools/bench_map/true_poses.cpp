@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench_map/true_poses.hpp"
 
-#include <Eigen/SVD>
 #include <algorithm>
 
+#include "evaluate/rigid_motion.hpp"
 #include "run/given_poses.hpp"
 
 namespace planemap::bench_map {
@@ -46,13 +46,7 @@ std::optional<Pose> alignment(const KeyframeTrajectory& to, const KeyframeTrajec
         sum += (a.translation() - to_mean) * (b.translation() - from_mean).transpose();
         sum += a.linear() * b.linear().transpose();
     }
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    Eigen::Matrix3d sign = Eigen::Matrix3d::Identity();
-    sign(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
-    Pose to_from_from = Pose::Identity();
-    to_from_from.linear() = svd.matrixU() * sign * svd.matrixV().transpose();
-    to_from_from.translation() = to_mean - to_from_from.linear() * from_mean;
-    return to_from_from;
+    return rigid_motion(sum, to_mean, from_mean);
 }
 
 }  // namespace planemap::bench_map
