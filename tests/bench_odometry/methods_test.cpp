@@ -6,7 +6,7 @@
 
 #include "evaluate/evaluation.hpp"
 #include "sensor/simulator/simulated_source.hpp"
-#include "sensor/temporary_folder.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap::bench_odometry {
 namespace {

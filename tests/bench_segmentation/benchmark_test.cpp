@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "benchmark/choices.hpp"
-#include "sensor/temporary_folder.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap::bench {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "bench_segmentation/metrics.hpp"
 #include "bench_segmentation/two_walls.hpp"
-#include "sensor/temporary_folder.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap::bench {
 namespace {

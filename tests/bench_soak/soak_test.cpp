@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "benchmark/rows.hpp"
-#include "core/temporary_folder.hpp"
 #include "sensor/simulator/simulated_source.hpp"
 #include "simulate/recording.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap::bench_soak {
 namespace {

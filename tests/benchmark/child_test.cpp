@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "messages/module_status.hpp"
-#include "sensor/temporary_folder.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap::benchmark {
 namespace {

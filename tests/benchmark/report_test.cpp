@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "core/files.hpp"
-#include "sensor/temporary_folder.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap::benchmark {
 namespace {

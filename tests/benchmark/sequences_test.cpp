@@ -6,7 +6,7 @@
 
 #include "benchmark/rendering.hpp"
 #include "core/trajectory.hpp"
-#include "sensor/temporary_folder.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap::benchmark {
 namespace {

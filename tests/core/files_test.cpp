@@ -10,23 +10,12 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "core/temporary_folder.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap {
 namespace {
 
-using test::TemporaryFolder;
 using testing::HasSubstr;
-
-template <typename Call>
-std::string error_of(Call call) {
-    try {
-        call();
-    } catch (const std::runtime_error& error) {
-        return error.what();
-    }
-    return "";
-}
 
 TEST(Files, BytesSurvive) {
     const TemporaryFolder folder;

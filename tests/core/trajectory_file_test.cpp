@@ -10,12 +10,11 @@
 
 #include "core/files.hpp"
 #include "core/random_values.hpp"
-#include "core/temporary_folder.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap {
 namespace {
 
-using test::TemporaryFolder;
 using testing::AllOf;
 using testing::HasSubstr;
 
@@ -25,12 +24,7 @@ TrajectoryFile read_text(const TemporaryFolder& folder, const std::string& text)
 }
 
 std::string error_of(const TemporaryFolder& folder, const std::string& text) {
-    try {
-        read_text(folder, text);
-    } catch (const std::runtime_error& error) {
-        return error.what();
-    }
-    return "no error";
+    return test::error_of([&] { read_text(folder, text); });
 }
 
 constexpr std::int64_t kStart = 1500000000033333;

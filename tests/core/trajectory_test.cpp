@@ -8,12 +8,11 @@
 
 #include "core/files.hpp"
 #include "core/random_values.hpp"
-#include "core/temporary_folder.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap {
 namespace {
 
-using test::TemporaryFolder;
 using testing::HasSubstr;
 
 Trajectory read_text(const TemporaryFolder& folder, const std::string& text) {
@@ -22,12 +21,7 @@ Trajectory read_text(const TemporaryFolder& folder, const std::string& text) {
 }
 
 std::string error_of(const TemporaryFolder& folder, const std::string& text) {
-    try {
-        read_text(folder, text);
-    } catch (const std::runtime_error& error) {
-        return error.what();
-    }
-    return "";
+    return test::error_of([&] { read_text(folder, text); });
 }
 
 TEST(Trajectory, WrittenAndReadBack) {

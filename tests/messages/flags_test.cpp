@@ -5,13 +5,12 @@
 #include <gtest/gtest.h>
 
 #include "core/files.hpp"
-#include "core/temporary_folder.hpp"
 #include "core/version.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap {
 namespace {
 
-using test::TemporaryFolder;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;

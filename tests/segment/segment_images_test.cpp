@@ -10,8 +10,8 @@
 #include "core/files.hpp"
 #include "segment/small_scene.hpp"
 #include "sensor/png.hpp"
-#include "sensor/temporary_folder.hpp"
 #include "sensor/test_images.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "core/sensor_preset.hpp"
 #include "data_folder.hpp"
-#include "sensor/temporary_folder.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap {
 namespace {

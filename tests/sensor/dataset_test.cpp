@@ -6,8 +6,8 @@
 
 #include <cstdlib>
 
-#include "sensor/temporary_folder.hpp"
 #include "sensor/test_images.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap {
 namespace {

@@ -4,8 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "sensor/temporary_folder.hpp"
 #include "sensor/test_images.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap {
 namespace {

@@ -7,8 +7,8 @@
 #include <random>
 
 #include "core/files.hpp"
-#include "sensor/temporary_folder.hpp"
 #include "sensor/test_images.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap {
 namespace {

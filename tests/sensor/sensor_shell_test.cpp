@@ -12,8 +12,8 @@
 
 #include "messages/log.hpp"
 #include "messages/tcpq_server.hpp"
-#include "sensor/temporary_folder.hpp"
 #include "shell_fixture.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap {
 namespace {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/random_values.hpp"
-#include "core/temporary_folder.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap {
 namespace {

@@ -7,12 +7,11 @@
 #include <stdexcept>
 
 #include "core/files.hpp"
-#include "core/temporary_folder.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap {
 namespace {
 
-using test::TemporaryFolder;
 using testing::HasSubstr;
 
 TEST(OutputFile, AnEarlierFileStaysUntilTheNewOneIsWhole) {

@@ -11,13 +11,13 @@
 #include <optional>
 #include <random>
 
-#include "core/temporary_folder.hpp"
 #include "data_folder.hpp"
 #include "decimated_sequence.hpp"
 #include "evaluate/evaluation.hpp"
 #include "run/input.hpp"
 #include "segmentation/outline_reach.hpp"
 #include "segmentation/segmentation.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap {
 namespace {

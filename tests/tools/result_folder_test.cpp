@@ -13,12 +13,11 @@
 #include <stdexcept>
 
 #include "core/files.hpp"
-#include "core/temporary_folder.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap {
 namespace {
 
-using test::TemporaryFolder;
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -28,16 +27,6 @@ const std::vector<std::string> kNames{"a", "b", "c"};
 
 Result text(const std::string& name, const std::string& bytes) {
     return {name, [=](const auto& file) { write_file(file, bytes); }};
-}
-
-template <typename Call>
-std::string error_of(Call call) {
-    try {
-        call();
-    } catch (const std::runtime_error& error) {
-        return error.what();
-    }
-    return "";
 }
 
 /// What lies in a folder, hidden things included.

@@ -10,6 +10,8 @@
 
 namespace planemap::bench_map {
 
+using benchmark::figure;
+
 namespace {
 
 constexpr std::int64_t kEvery = 1000;  // frames a line
@@ -21,25 +23,13 @@ double pipeline_ms(Pipeline& pipeline) {
            pipeline.map().status().work_cpu_ms().sum();
 }
 
-GrowthPoint point_at(std::int64_t frames, Pipeline& pipeline) {
+Json point_at(std::int64_t frames, Pipeline& pipeline) {
     const PlaneMapper& mapper = pipeline.map().mapper();
-    GrowthPoint point;
-    point.frames = frames;
-    point.keyframes = static_cast<int>(pipeline.keyframes().keyframes.size());
-    point.planes = mapper.map().planes.size();
-    point.message_bytes = static_cast<std::size_t>(to_message(mapper.map(), 0).getEncodedSize());
-    point.memory_bytes = mapper.memory_bytes();
-    return point;
-}
-
-Json to_json(const GrowthPoint& p) {
-    return {{"frames", p.frames},
-            {"keyframes", p.keyframes},
-            {"planes", p.planes},
-            {"message_bytes", p.message_bytes},
-            {"memory_bytes", p.memory_bytes},
-            {"map_ms", p.map_ms},
-            {"frame_ms", p.frame_ms}};
+    return {{"frames", frames},
+            {"keyframes", pipeline.keyframes().keyframes.size()},
+            {"planes", mapper.map().planes.size()},
+            {"message_bytes", to_message(mapper.map(), 0).getEncodedSize()},
+            {"memory_bytes", mapper.memory_bytes()}};
 }
 
 /// Watches a pipeline as its frames come.
@@ -58,11 +48,11 @@ class Observer {
     }
     void note(std::int64_t frames, Pipeline& pipeline) {
         if (frames == frames_) return;
-        GrowthPoint point = point_at(frames, pipeline);
+        Json point = point_at(frames, pipeline);
         const double total_ms = pipeline_ms(pipeline);
-        point.map_ms = map_ms_.median();
-        point.frame_ms = (total_ms - total_ms_) / static_cast<double>(frames - frames_);
-        growth_.points.push_back(point);
+        point["map_ms"] = map_ms_.median();
+        point["frame_ms"] = (total_ms - total_ms_) / static_cast<double>(frames - frames_);
+        growth_.points.push_back(std::move(point));
         map_ms_ = {};
         frames_ = frames;
         total_ms_ = total_ms;
@@ -79,13 +69,12 @@ class Observer {
 
 std::optional<double> Growth::second_round() const {
     if (rounds.size() < 2) return std::nullopt;
-    const auto first = static_cast<double>(rounds[0].message_bytes);
-    return static_cast<double>(rounds[1].message_bytes) / first - 1;
+    return figure(rounds[1], "message_bytes") / figure(rounds[0], "message_bytes") - 1;
 }
 
 std::optional<double> Growth::cost_ratio() const {
     if (points.size() < 3) return std::nullopt;
-    return points.back().frame_ms / points[1].frame_ms;
+    return figure(points.back(), "frame_ms") / figure(points[1], "frame_ms");
 }
 
 std::int64_t frames_a_round(const std::string& simulator_name) {
@@ -119,8 +108,7 @@ Growth measure_growth(const std::string& simulator_name, std::int64_t frames, Pi
 
 Json to_json(const std::string& sequence, const Growth& growth) {
     const auto itself = [](double value) { return value; };
-    Json json{{"sequence", sequence}, {"points", Json::array()}};
-    for (const GrowthPoint& p : growth.points) json["points"].push_back(to_json(p));
+    Json json{{"sequence", sequence}, {"points", growth.points}};
     json["second_round_share"] = benchmark::known(growth.second_round(), itself);
     json["cost_ratio"] = benchmark::known(growth.cost_ratio(), itself);
     return json;
@@ -136,11 +124,11 @@ std::string growth_table(const Growth& growth) {
                                  {"map ms/keyframe", "map_ms", 16, 2},
                                  {"all ms/frame", "frame_ms", 13, 2}};
     std::string lines = table.heading();
-    for (const GrowthPoint& p : growth.points) lines += table.line(to_json(p));
+    for (const Json& point : growth.points) lines += table.line(point);
     for (std::size_t i = 0; i < growth.rounds.size(); ++i) {
-        const GrowthPoint& p = growth.rounds[i];
-        lines += text("round %zu ends at frame %lld: %zu planes, %zu bytes\n", i + 1,
-                      static_cast<long long>(p.frames), p.planes, p.message_bytes);
+        const Json& round = growth.rounds[i];
+        lines += text("round %zu ends at frame %.0f: %.0f planes, %.0f bytes\n", i + 1,
+                      figure(round, "frames"), figure(round, "planes"), figure(round, "message_bytes"));
     }
     if (const auto added = growth.second_round())
         lines += text("the second round adds %.1f %% to the message\n", 100 * *added);

@@ -14,41 +14,31 @@ namespace {
 /// Colour blurred over 15 ms and up to 9 ms away from depth, as a Kinect's.
 constexpr const char* kHandHeld = "office?blur=4&jitter=0.009";
 
-std::vector<SequenceInfo> walks() {
-    std::vector<SequenceInfo> walks;
-    const char* what[] = {
-        "simulated office, a recorded hand-held trajectory of 6.5 m, Kinect noise, blur, jitter",
-        "simulated office, the same, a trajectory of 2.1 m",
-        "simulated office, the same, a trajectory of 8.4 m",
-        "simulated office, the same, a trajectory of 11.3 m"};
-    for (int i = 0; i < 4; ++i) {
-        const std::string name = "kt" + std::to_string(i);
-        walks.push_back({"sim:" + name, what[i], kHandHeld, "handheld_poses/" + name + ".txt", 0});
-    }
-    const auto add = [&](const char* name, const char* description, const char* simulator) {
-        walks.push_back({name, description, simulator, "", 0});
-    };
-    add("sim:building", "simulated corridor around a block, 1.1 rounds of 100 m at walking speed",
-        "building?blur=4&jitter=0.009&speed=1.2&turn=60&frames=2850");
-    add("sim:spin", "simulated office, fast rotations with blur",
-        "office?blur=8&jitter=0.009&speed=1&turn=180&frames=600");
-    add("sim:wall", "simulated: along a wall, 6 m of it bare", "wall?blur=4&jitter=0.009&frames=1300");
-    add("sim:clutter", "simulated: small boxes any way up, no plane",
-        "clutter?blur=4&jitter=0.009&frames=600");
-    add("sim:dark", "simulated office without light: depth alone", "office?light=0&jitter=0.009&frames=870");
-    add("sim:twins", "simulated: two rooms that nothing tells apart, and a corridor",
-        "twins?blur=4&jitter=0.009&speed=0.8&turn=70&frames=2100");
-    return walks;
-}
-
 }  // namespace
 
 const std::vector<SequenceInfo>& known_sequences() {
-    static const std::vector<SequenceInfo> kSequences = [] {
-        std::vector<SequenceInfo> all = benchmark::recordings();
-        for (SequenceInfo& walk : walks()) all.push_back(std::move(walk));
-        return all;
-    }();
+    static const std::vector<SequenceInfo> kSequences = benchmark::with_recordings({
+        {"sim:kt0", "simulated office, a recorded hand-held trajectory of 6.5 m, Kinect noise, blur, jitter",
+         kHandHeld, "handheld_poses/kt0.txt", 0},
+        {"sim:kt1", "simulated office, the same, a trajectory of 2.1 m", kHandHeld, "handheld_poses/kt1.txt",
+         0},
+        {"sim:kt2", "simulated office, the same, a trajectory of 8.4 m", kHandHeld, "handheld_poses/kt2.txt",
+         0},
+        {"sim:kt3", "simulated office, the same, a trajectory of 11.3 m", kHandHeld, "handheld_poses/kt3.txt",
+         0},
+        {"sim:building", "simulated corridor around a block, 1.1 rounds of 100 m at walking speed",
+         "building?blur=4&jitter=0.009&speed=1.2&turn=60&frames=2850", "", 0},
+        {"sim:spin", "simulated office, fast rotations with blur",
+         "office?blur=8&jitter=0.009&speed=1&turn=180&frames=600", "", 0},
+        {"sim:wall", "simulated: along a wall, 6 m of it bare", "wall?blur=4&jitter=0.009&frames=1300", "",
+         0},
+        {"sim:clutter", "simulated: small boxes any way up, no plane",
+         "clutter?blur=4&jitter=0.009&frames=600", "", 0},
+        {"sim:dark", "simulated office without light: depth alone", "office?light=0&jitter=0.009&frames=870",
+         "", 0},
+        {"sim:twins", "simulated: two rooms that nothing tells apart, and a corridor",
+         "twins?blur=4&jitter=0.009&speed=0.8&turn=70&frames=2100", "", 0},
+    });
     return kSequences;
 }
 

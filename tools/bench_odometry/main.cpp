@@ -32,7 +32,7 @@ std::string description() {
            "--odometry-max-points 200\n"
            "  planemap-bench-odometry --sequences redkitchen --plots out/plots\n"
            "  planemap-bench-odometry --table2                      the paper's Table 2\n"
-           "Sequences:\n" +
+           "Sequences (and any sim:..., see planemap-simulate --help; seed=1..5 is five of them):\n" +
            benchmark::described(known_sequences(), 19) + "Methods:\n" +
            benchmark::described(known_methods(), 19) +
            "Columns:\n"

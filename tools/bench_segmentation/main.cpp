@@ -27,7 +27,7 @@ std::string description() {
            "  planemap-bench-segmentation --sequences redkitchen --methods cells,ransac/4\n"
            "  planemap-bench-segmentation --table1                                the paper's Table 1\n"
            "  planemap-bench-segmentation --sequences sim:office --methods cells/1 --overlays out/overlays\n"
-           "Sequences:\n" +
+           "Sequences (and any sim:..., see planemap-simulate --help; seed=1..5 is five of them):\n" +
            benchmark::described(known_sequences(), 20) + "Methods (NAME/N: at subsampling N only):\n" +
            benchmark::described(known_methods(), 20) +
            "Columns:\n"

@@ -170,18 +170,13 @@ Sequence open_noise(std::size_t frames) {
 }  // namespace
 
 const std::vector<SequenceInfo>& known_sequences() {
-    static const std::vector<SequenceInfo> kSequences = [] {
-        std::vector<SequenceInfo> all = benchmark::recordings();
-        const std::vector<SequenceInfo> others{
-            {"sim:office", "the simulator's room with a Kinect's noise, exact truth", "office?frames=900", "",
-             60},
-            {"plane_labels", "three synthetic living-room images with true labels", "", "", 3},
-            {"wall", "worst case: one clean wall that fills the image", "", "", 10},
-            {"noise", "worst case: every reading random", "", "", 10},
-        };
-        all.insert(all.end(), others.begin(), others.end());
-        return all;
-    }();
+    static const std::vector<SequenceInfo> kSequences = benchmark::with_recordings({
+        {"sim:office", "the simulator's room with a Kinect's noise, exact truth", "office?frames=900", "",
+         60},
+        {"plane_labels", "three synthetic living-room images with true labels", "", "", 3},
+        {"wall", "worst case: one clean wall that fills the image", "", "", 10},
+        {"noise", "worst case: every reading random", "", "", 10},
+    });
     return kSequences;
 }
 

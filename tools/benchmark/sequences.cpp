@@ -65,15 +65,16 @@ std::filesystem::path default_data_folder() {
     return std::filesystem::path(PLANEMAP_SOURCE) / ".." / "shared" / "data";
 }
 
-const std::vector<SequenceInfo>& recordings() {
-    static const std::vector<SequenceInfo> kRecordings{
+std::vector<SequenceInfo> with_recordings(const std::vector<SequenceInfo>& own) {
+    std::vector<SequenceInfo> all{
         {"redkitchen", "Kinect, hand-held, a kitchen with revisits; the truth errs by centimetres", "", "",
          100},
         {"fr1_rpy_start", "Kinect, fast rotations with blur over a desk", "", "", 50},
         {"fr3_cabinet", "Xtion, around a cabinet, 58 frames 0.67 s apart", "", "", 58},
         {"livingroom_micro", "synthetic living room without noise; no truth", "", "", 50},
     };
-    return kRecordings;
+    all.insert(all.end(), own.begin(), own.end());
+    return all;
 }
 
 std::vector<SequenceInfo> parse_sequences(const std::string& list, const std::vector<SequenceInfo>& known,

@@ -21,8 +21,8 @@ struct SequenceInfo {
     int frames = 0;         ///< for a benchmark that takes frames from all over it, by default; 0: its own
 };
 
-/// The recordings of the sample data.
-const std::vector<SequenceInfo>& recordings();
+/// The recordings of the sample data, and then a benchmark's own sequences.
+std::vector<SequenceInfo> with_recordings(const std::vector<SequenceInfo>& own);
 
 enum class Unknown { kRefused, kIsPath };
 

@@ -9,7 +9,7 @@
 
 #include "core/files.hpp"
 #include "core/registration.hpp"
-#include "sensor/temporary_folder.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap::sim {
 namespace {

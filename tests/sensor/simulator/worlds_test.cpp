@@ -7,7 +7,7 @@
 
 #include "core/trajectory.hpp"
 #include "sensor/simulator/simulated_source.hpp"
-#include "sensor/temporary_folder.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap::sim {
 namespace {

@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-namespace planemap {
+namespace planemap::test {
 
 /// An empty folder that goes away with the test.
 class TemporaryFolder {
@@ -27,6 +27,7 @@ class TemporaryFolder {
     TemporaryFolder& operator=(const TemporaryFolder&) = delete;
 
     const std::filesystem::path& path() const { return path_; }
+    std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
     /// Writes a file, with the folders above it.
     std::filesystem::path write(const std::string& name, std::string_view bytes) const {
         const std::filesystem::path file = path_ / name;
@@ -49,5 +50,12 @@ std::string error_of(const Action& action) {
     }
     return {};
 }
+
+}  // namespace planemap::test
+
+namespace planemap {
+
+using test::error_of;
+using test::TemporaryFolder;
 
 }  // namespace planemap
