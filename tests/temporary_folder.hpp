@@ -52,3 +52,10 @@ std::string error_of(const Action& action) {
 }
 
 }  // namespace planemap::test
+
+namespace planemap {
+
+using test::error_of;
+using test::TemporaryFolder;
+
+}  // namespace planemap

@@ -4,13 +4,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
-#include "bench_map/room.hpp"
+#include "benchmark/rows.hpp"
+#include "evaluate/room.hpp"
 
 namespace planemap::bench_map {
 namespace {
 
+using namespace evaluation;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -57,23 +57,16 @@ TEST(Row, JsonHasItsKeys) {
 TEST(Row, WhatIsNotKnownIsNull) {
     const Row row{"redkitchen", "estimated", {}, std::nullopt, {}};
     const auto json = to_json(row);
-    for (const char* key : {"planes_true", "found", "split", "spurious", "distance_error_mean_m",
-                            "distance_error_mean_percent", "angle_error_mean_deg", "outline_iou",
-                            "leaves_explained", "area_supported", "surface_angle_worst_deg"}) {
-        ASSERT_TRUE(json.contains(key)) << key;
-        EXPECT_TRUE(json[key].is_null()) << key;
-    }
+    benchmark::expect_null(json, {"planes_true", "found", "split", "spurious", "distance_error_mean_m",
+                                  "distance_error_mean_percent", "angle_error_mean_deg", "outline_iou",
+                                  "leaves_explained", "area_supported", "surface_angle_worst_deg"});
     EXPECT_EQ(details(row, true), "");
-    EXPECT_EQ(goals({row}), "");
+    EXPECT_EQ(goals({json}), "");
 }
 
 TEST(Row, ColumnsStandUnderTheirHeading) {
-    const std::string heading = table_heading();
-    for (const std::string& line : {table_line(row_of(map_of(room()))),
-                                    table_line({"redkitchen", "estimated", {}, std::nullopt, {}})}) {
-        EXPECT_EQ(line.size(), heading.size());
-        for (std::size_t i = 0; i < heading.size(); ++i) EXPECT_EQ(line[i] == '|', heading[i] == '|') << i;
-    }
+    benchmark::expect_aligned(table(), {to_json(row_of(map_of(room()))),
+                                        to_json({"redkitchen", "estimated", {}, std::nullopt, {}})});
 }
 
 TEST(Row, DetailsNameWhatToLookAt) {
@@ -87,11 +80,11 @@ TEST(Row, DetailsNameWhatToLookAt) {
 }
 
 TEST(Row, GoalsAreJudgedFromTheFigures) {
-    const Row good = row_of(map_of(room()));
+    const Json good = to_json(row_of(map_of(room())));
     EXPECT_THAT(goals({good}), Not(HasSubstr("NOT met")));
     Row bad = row_of({});
     bad.surfaces = {{1, 1, 100, 0.2, 0.02}};
-    const std::string text = goals({good, bad});
+    const std::string text = goals({good, to_json(bad)});
     EXPECT_THAT(text, HasSubstr(">= 1     NOT met: 1.000 0.000"));
     EXPECT_THAT(text, HasSubstr("<= 0.5   met: 0.20"));
     EXPECT_THAT(text, HasSubstr("<= 0.01  NOT met: 0.0200"));
@@ -99,13 +92,13 @@ TEST(Row, GoalsAreJudgedFromTheFigures) {
 
 TEST(Errors, MeanMedianAndWorst) {
     const std::vector<PairMeasure> pairs{{0, 1, 2, 2.1}, {0, 2, 1, 0.8}, {1, 2, 4, 4}, {1, 3, 1, 1}};
-    const ErrorFigures metres = errors_of(pairs).value(), percent = relative_errors_of(pairs).value();
+    const Statistics metres = errors_of(pairs), percent = relative_errors_of(pairs);
     EXPECT_NEAR(metres.mean, 0.075, 1e-9);
     EXPECT_NEAR(metres.median, 0.05, 1e-9);
-    EXPECT_NEAR(metres.worst, 0.2, 1e-9);
+    EXPECT_NEAR(metres.max, 0.2, 1e-9);
     EXPECT_NEAR(percent.mean, 6.25, 1e-9);
-    EXPECT_NEAR(percent.worst, 20, 1e-9);
-    EXPECT_FALSE(errors_of({}));
+    EXPECT_NEAR(percent.max, 20, 1e-9);
+    EXPECT_EQ(errors_of({}).count, 0u);
 }
 
 }  // namespace

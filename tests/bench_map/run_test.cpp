@@ -3,9 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "bench_map/judge.hpp"
-#include "bench_map/sequences.hpp"
 #include "bench_map/true_poses.hpp"
+#include "bench_map/truth.hpp"
 
 namespace planemap::bench_map {
 namespace {
@@ -16,8 +15,7 @@ TEST(RunSequence, MapsBothKindsOfPoses) {
     RunOptions options;
     options.frames = 30;
     std::int64_t seen = 0;
-    const SequenceRun run =
-        run_sequence(kOffice, options, [&](std::int64_t frames, Pipeline&) { seen = frames; });
+    const SequenceRun run = run_sequence(kOffice, options, [&](std::int64_t frames) { seen = frames; });
     EXPECT_EQ(run.frames, 30);
     EXPECT_EQ(seen, 30);
     ASSERT_TRUE(run.true_poses && run.truth);
@@ -43,7 +41,7 @@ TEST(RunSequence, LeavesOutWhatIsNotWanted) {
     options.frames = 3;
     options.true_poses = false;
     options.pipeline.with_octomap = false;
-    const SequenceRun run = run_sequence(kOffice, options, [](std::int64_t, Pipeline&) {});
+    const SequenceRun run = run_sequence(kOffice, options, [](std::int64_t) {});
     EXPECT_FALSE(run.true_poses);
     EXPECT_FALSE(run.estimated.coverage);
     EXPECT_FALSE(run.keyframes.empty());

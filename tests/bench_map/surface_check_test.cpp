@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include "bench_map/room.hpp"
+#include "evaluate/room.hpp"
 
 namespace planemap::bench_map {
 namespace {
+
+using namespace evaluation;
 
 CameraInfo camera() {
     CameraInfo camera;

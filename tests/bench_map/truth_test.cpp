@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "core/angle.hpp"
+
 namespace planemap::bench_map {
 namespace {
 
@@ -64,13 +66,13 @@ TEST(TruthCollector, SeesNothingBehindOrOutOfRangeOrGrazing) {
         names.push_back(plane.name);
         if (plane.name != "floor") continue;
         for_each_cell(plane.visible, [&](int x, int y) {
-            const Eigen::Vector2d p = cell_centre(x, y);
+            const Eigen::Vector2d p = plane.visible.cell_centre(x, y);
             const Vector3d q = plane.world_from_plane * Vector3d(p.x(), p.y(), 0);
             floor_until = std::max(floor_until, q.norm());
         });
     }
     EXPECT_EQ(names, (std::vector<std::string>{"front", "floor"}));
-    EXPECT_NEAR(floor_until, 0.2 / std::cos(76 * 3.14159265 / 180), 0.03);
+    EXPECT_NEAR(floor_until, 0.2 / std::cos(radians(76)), 0.03);
 }
 
 TEST(TruthCollector, PartsOfOnePlaneBelongTogetherWithinHalfAMetre) {
@@ -123,6 +125,16 @@ TEST(TruthCollector, MoreViewsShowMore) {
         area = now;
     }
     EXPECT_NEAR(area, (2 * 319.5 / 525 * 2 + 2) * 2 * 239.5 / 525 * 2, 0.2);
+}
+
+TEST(TruePlanes, AreKnownOfSimulatedWorldsOnly) {
+    EXPECT_FALSE(true_planes("redkitchen", 0));
+    const std::string office = "sim:office?width=160&height=120&frames=60";
+    const auto some = true_planes(office, 1), more = true_planes(office, 0);
+    ASSERT_TRUE(some && more);
+    EXPECT_GT(some->size(), 3u);
+    EXPECT_GT(more->size(), some->size());
+    for (const TruePlane& plane : *more) EXPECT_GT(plane.visible.count(), 0u) << plane.name;
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "benchmark/choices.hpp"
+#include "simulator/simulated_source.hpp"
 #include "temporary_folder.hpp"
 
 namespace planemap::bench_odometry {
@@ -13,18 +15,16 @@ using testing::AllOf;
 using testing::HasSubstr;
 
 TEST(Benchmark, RunsMethodsOnARenderedSequence) {
-    const test::TemporaryFolder folder;
+    const TemporaryFolder folder;
     BenchmarkOptions options;
     options.cache = folder.path();
     options.frames = 15;
     options.slow_frames = 8;
     options.quiet = true;
-    const Benchmark benchmark(options);
-    std::string missing;
-    const auto sequence = benchmark.open({"sim:tiny", "", "office?width=320&height=240", ""}, missing);
-    ASSERT_TRUE(sequence) << missing;
+    const Benchmark runner(options);
+    const Sequence sequence = runner.open({"sim:tiny", "", "office?width=320&height=240", "", 0});
     for (const MethodInfo& method : parse_methods("default,opencv-rgbdicp")) {
-        const Row row = benchmark.run(*sequence, method);
+        const Row row = runner.run(sequence, method);
         EXPECT_EQ(row.method, method.name);
         EXPECT_EQ(row.run.frames, method.slow ? 8 : 15);
         EXPECT_EQ(row.lost(), 0);
@@ -35,17 +35,30 @@ TEST(Benchmark, RunsMethodsOnARenderedSequence) {
     }
 }
 
+TEST(Benchmark, KnowsSequencesThatCanBeRead) {
+    for (const SequenceInfo& info : known_sequences()) {
+        const std::string name = "sim:" + (info.simulator.empty() ? "office" : info.simulator);
+        EXPECT_NO_THROW(simulator::parse_simulator_name(name)) << info.name;
+    }
+    BenchmarkOptions options;
+    options.data = "/no/such/data";
+    const Benchmark runner(options);
+    for (const char* name : {"redkitchen", "sim:kt2"}) {
+        const SequenceInfo info = benchmark::named("sequences", name, known_sequences());
+        EXPECT_THAT(error_of([&] { runner.open(info); }), HasSubstr("/no/such/data/"));
+    }
+}
+
 TEST(Benchmark, ErrorsNameMethodSequenceAndReason) {
-    const Benchmark benchmark({});
-    EXPECT_THAT(test::error_of([&] {
-                    benchmark.run({"kitchen", "/no/such/folder", std::nullopt}, known_methods().at(0));
+    const Benchmark runner({});
+    EXPECT_THAT(error_of([&] {
+                    runner.run({"kitchen", "/no/such/folder", std::nullopt}, known_methods().at(0));
                 }),
                 AllOf(HasSubstr("default on kitchen"), HasSubstr("/no/such/folder")));
     BenchmarkOptions bad;
     bad.frames = -1;
     bad.slow_frames = -2;
-    EXPECT_THAT(test::error_of([&] { Benchmark{bad}; }),
-                AllOf(HasSubstr("frames"), HasSubstr("slow-frames")));
+    EXPECT_THAT(error_of([&] { Benchmark{bad}; }), AllOf(HasSubstr("frames"), HasSubstr("slow-frames")));
 }
 
 }  // namespace

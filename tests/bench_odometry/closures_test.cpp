@@ -3,9 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include <numbers>
-
 #include "bench_odometry/walks.hpp"
+#include "core/angle.hpp"
 
 namespace planemap::bench_odometry {
 namespace {
@@ -16,8 +15,7 @@ using Eigen::Vector3d;
 Closure closure(const Trajectory& truth, std::size_t from, std::size_t to, double metres, double degrees) {
     Pose error = Pose::Identity();
     error.translation() = metres * Vector3d::UnitX();
-    error.linear() =
-        Eigen::AngleAxisd(degrees * std::numbers::pi / 180, Vector3d::UnitZ()).toRotationMatrix();
+    error.linear() = Eigen::AngleAxisd(radians(degrees), Vector3d::UnitZ()).toRotationMatrix();
     const Pose relative = truth[from].world_from_camera.inverse() * truth[to].world_from_camera;
     return {truth[from].utime, truth[to].utime, relative * error};
 }

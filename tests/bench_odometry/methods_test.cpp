@@ -17,9 +17,9 @@ using testing::HasSubstr;
 TEST(ParseMethods, NamesWhatThereIs) {
     EXPECT_EQ(parse_methods("paper,default").at(1).name, "default");
     EXPECT_TRUE(parse_methods("opencv-rgbd").at(0).slow);
-    EXPECT_THAT(test::error_of([] { parse_methods("default,orb"); }),
+    EXPECT_THAT(error_of([] { parse_methods("default,orb"); }),
                 AllOf(HasSubstr("\"orb\""), HasSubstr("default-no-graph"), HasSubstr("opencv-rgbdicp")));
-    EXPECT_NE(test::error_of([] { parse_methods(""); }), "");
+    EXPECT_NE(error_of([] { parse_methods(""); }), "");
 }
 
 TEST(RunMethod, EveryMethodFollowsAnEasyWalk) {
@@ -46,9 +46,8 @@ TEST(RunMethod, EveryMethodFollowsAnEasyWalk) {
 
 TEST(RunMethod, MissingInputIsNamed) {
     for (const char* method : {"default", "opencv-rgbd"}) {
-        EXPECT_THAT(
-            test::error_of([&] { run_method(method, "/no/such/folder", 0, {}, [](std::int64_t) {}); }),
-            HasSubstr("/no/such/folder"));
+        EXPECT_THAT(error_of([&] { run_method(method, "/no/such/folder", 0, {}, [](std::int64_t) {}); }),
+                    HasSubstr("/no/such/folder"));
     }
 }
 

@@ -3,10 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <nlohmann/json.hpp>
-
 #include "bench_odometry/walks.hpp"
+#include "benchmark/rows.hpp"
 
 namespace planemap::bench_odometry {
 namespace {
@@ -29,7 +27,7 @@ MethodRun run_of(const Trajectory& truth, double size) {
 TEST(Row, ComparesWithTheTruth) {
     const Trajectory truth = circle(1);
     const Row row = make_row("sim:kt0", "default", truth, run_of(truth, 1.02));
-    const nlohmann::ordered_json json = to_json(row);
+    const Json json = to_json(row);
     EXPECT_EQ(json["sequence"], "sim:kt0");
     EXPECT_EQ(json["method"], "default");
     EXPECT_EQ(json["frames"], 310);
@@ -48,25 +46,18 @@ TEST(Row, ComparesWithTheTruth) {
 
 TEST(Row, WhatIsNotKnownIsNull) {
     const Trajectory truth = circle(1);
-    const nlohmann::ordered_json without = to_json(make_row("a", "b", std::nullopt, run_of(truth, 1)));
-    for (const char* key : {"ate_m", "scale", "rpe_frame_m", "rpe_1s_deg", "loops_true", "loops_false"})
-        EXPECT_TRUE(without.at(key).is_null()) << key;
+    const Json without = to_json(make_row("a", "b", std::nullopt, run_of(truth, 1)));
+    benchmark::expect_null(without,
+                           {"ate_m", "scale", "rpe_frame_m", "rpe_1s_deg", "loops_true", "loops_false"});
     EXPECT_EQ(without["loops_unjudged"], 2);
-    const nlohmann::ordered_json empty = to_json(make_row("a", "b", truth, {}));
-    for (const char* key : {"ate_m", "rpe_frame_m", "median_ms"}) EXPECT_TRUE(empty.at(key).is_null()) << key;
+    benchmark::expect_null(to_json(make_row("a", "b", truth, {})), {"ate_m", "rpe_frame_m", "median_ms"});
 }
 
 TEST(Row, LinesOfTheTableAreAligned) {
     const Trajectory truth = circle(1);
-    const std::string heading = table_heading();
-    for (const Row& row : {make_row("a", "opencv-rgbdicp", truth, run_of(truth, 1.02)),
-                           make_row("a", "paper", std::nullopt, run_of(truth, 1)),
-                           make_row("a", "default-no-graph", truth, {})}) {
-        const std::string line = table_line(row);
-        EXPECT_EQ(line.size(), heading.size()) << line;
-        for (std::size_t i = 0; i < std::min(line.size(), heading.size()); ++i)
-            EXPECT_EQ(line[i] == '|', heading[i] == '|') << line;
-    }
+    benchmark::expect_aligned(table(), {to_json(make_row("a", "opencv-rgbdicp", truth, run_of(truth, 1.02))),
+                                        to_json(make_row("a", "paper", std::nullopt, run_of(truth, 1))),
+                                        to_json(make_row("a", "default-no-graph", truth, {}))});
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "benchmark/choices.hpp"
 #include "temporary_folder.hpp"
 
 namespace planemap::bench {
@@ -12,18 +13,20 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
+SequenceInfo sequence_named(const char* name) {
+    return benchmark::named("sequences", name, known_sequences());
+}
+
 TEST(Benchmark, FillsARowForEachMethodAndDrawsWhatItFound) {
-    const test::TemporaryFolder folder;
+    const TemporaryFolder folder;
     BenchmarkOptions options;
     options.frames = 4;
     options.slow_frames = 2;
     options.overlays = folder.path();
     options.overlay_every = 2;
     options.quiet = true;
-    std::string missing;
     const std::vector<Row> rows =
-        Benchmark(options).run(parse_sequences("wall").front(), parse_methods("cells/2,ransac/2"), missing);
-    EXPECT_EQ(missing, "");
+        Benchmark(options).run(sequence_named("wall"), parse_methods("cells/2,ransac/2"));
     ASSERT_EQ(rows.size(), 3u);
     EXPECT_EQ(rows[0].method.name, "truth");
     EXPECT_TRUE(rows[0].ms.empty());
@@ -40,14 +43,13 @@ TEST(Benchmark, FillsARowForEachMethodAndDrawsWhatItFound) {
     EXPECT_FALSE(std::filesystem::exists(folder.path() / "wall" / "0001-cells-2.png"));
 }
 
-TEST(Benchmark, MissingDataGivesNoRowsAndIsSaid) {
+TEST(Benchmark, MissingDataIsSaid) {
     BenchmarkOptions options;
     options.data = "/no/such/folder";
-    std::string missing;
-    const auto rows =
-        Benchmark(options).run(parse_sequences("redkitchen").front(), parse_methods("cells"), missing);
-    EXPECT_TRUE(rows.empty());
-    EXPECT_THAT(missing, HasSubstr("/no/such/folder/redkitchen"));
+    EXPECT_THROW(Benchmark(options).run(sequence_named("redkitchen"), parse_methods("cells")),
+                 benchmark::DataMissing);
+    EXPECT_THAT(error_of([&] { open_sequence(sequence_named("redkitchen"), 3, options.data); }),
+                AllOf(HasSubstr("/no/such/folder/redkitchen"), HasSubstr("PLANEMAP_DATA")));
 }
 
 TEST(Benchmark, BadOptionsAreNamed) {
@@ -55,7 +57,7 @@ TEST(Benchmark, BadOptionsAreNamed) {
     options.frames = -1;
     options.slow_frames = 0;
     options.overlay_every = 0;
-    EXPECT_THAT(test::error_of([&] { Benchmark benchmark(options); }),
+    EXPECT_THAT(error_of([&] { Benchmark benchmark(options); }),
                 AllOf(HasSubstr("frames"), HasSubstr("slow-frames"), HasSubstr("overlay-every")));
 }
 

@@ -4,13 +4,14 @@
 #include <gtest/gtest.h>
 
 #include "bench_segmentation/two_walls.hpp"
+#include "core/angle.hpp"
 
 namespace planemap::bench {
 namespace {
 
 /// A sighting of the plane z = height, tilted and shifted.
 Sighting sighting(double height, double tilt_deg = 0, double shift_m = 0, double pixels = 1000) {
-    const double tilt = tilt_deg * 0.0174532925;
+    const double tilt = radians(tilt_deg);
     const Eigen::Vector3d normal(std::sin(tilt), 0, std::cos(tilt)), centroid(0, 0, height + shift_m);
     return {{normal, -normal.dot(centroid)}, centroid, pixels};
 }

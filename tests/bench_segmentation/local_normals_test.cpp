@@ -4,12 +4,13 @@
 #include <gtest/gtest.h>
 
 #include "bench_segmentation/two_walls.hpp"
+#include "core/angle.hpp"
 
 namespace planemap::bench {
 namespace {
 
 double angle_deg(const Eigen::Vector3f& a, const Eigen::Vector3d& b) {
-    return angle_between(a.cast<double>(), b) * 57.29578;
+    return degrees(angle_between(a.cast<double>(), b));
 }
 
 TEST(LocalNormals, AreThoseOfThePlaneWhateverItsTilt) {

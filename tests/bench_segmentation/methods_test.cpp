@@ -46,6 +46,17 @@ TEST(Decimated, CameraSeesTheSamePointsInTheSamePlaces) {
     }
 }
 
+TEST(Decimated, TwoCamerasCanStillBeRegistered) {
+    CameraInfo camera = scene::camera();
+    camera.registered = false;
+    camera.color.fx = camera.color.fy = 1.2 * camera.depth.fx;
+    for (const int step : {2, 4, 8}) {
+        const DepthImage small((camera.depth.width + step - 1) / step,
+                               (camera.depth.height + step - 1) / step);
+        EXPECT_NO_THROW(check_input(small, decimated(camera, step))) << step;
+    }
+}
+
 TEST(SpreadLabels, EachPixelTakesItsNearestSamplesLabelIfItLiesOnThePlane) {
     TwoWalls walls;
     walls.depth(101, 101) = 500;  // far before the wall

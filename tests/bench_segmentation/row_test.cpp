@@ -4,11 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <nlohmann/json.hpp>
-
 #include "bench_segmentation/local_normals.hpp"
 #include "bench_segmentation/two_walls.hpp"
+#include "benchmark/rows.hpp"
 
 namespace planemap::bench {
 namespace {
@@ -27,7 +25,7 @@ Row row_of(bool with_truth, bool with_pose) {
 }
 
 TEST(Row, JsonHasTheAgreedKeysAndFigures) {
-    const nlohmann::ordered_json json = to_json(row_of(true, true));
+    const Json json = to_json(row_of(true, true));
     EXPECT_EQ(json["sequence"], "walls");
     EXPECT_EQ(json["method"], "perfect");
     EXPECT_EQ(json["subsampling"], 1);
@@ -46,21 +44,16 @@ TEST(Row, JsonHasTheAgreedKeysAndFigures) {
 }
 
 TEST(Row, WithoutTruthOrPosesTheFiguresAreNull) {
-    const nlohmann::ordered_json json = to_json(row_of(false, false));
-    for (const char* key : {"recall", "precision", "angle_median_deg", "distance_median_m", "correct",
-                            "spread_angle_deg", "spread_distance_m"})
-        EXPECT_TRUE(json.at(key).is_null()) << key;
+    const Json json = to_json(row_of(false, false));
+    benchmark::expect_null(json, {"recall", "precision", "angle_median_deg", "distance_median_m", "correct",
+                                  "spread_angle_deg", "spread_distance_m"});
     EXPECT_EQ(json["explained"], 1.0);
     EXPECT_TRUE(to_json(Row{}).at("median_ms").is_null());
 }
 
 TEST(Row, LinesOfTheTableAreAligned) {
-    std::string heading = table_heading();
-    for (const Row& row : {row_of(true, true), row_of(false, true), row_of(false, false), Row{}}) {
-        const std::string line = table_line(row);
-        EXPECT_EQ(line.size(), heading.size()) << line;
-        for (std::size_t i = 0; i < line.size(); ++i) EXPECT_EQ(line[i] == '|', heading[i] == '|') << line;
-    }
+    benchmark::expect_aligned(table(), {to_json(row_of(true, true)), to_json(row_of(false, true)),
+                                        to_json(row_of(false, false)), to_json(Row{})});
 }
 
 }  // namespace

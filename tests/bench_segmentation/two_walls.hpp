@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "bench_segmentation/truth.hpp"
+#include "core/angle.hpp"
 #include "segmentation/scene.hpp"
 
 namespace planemap::bench {
@@ -39,7 +40,7 @@ struct TwoWalls {
 inline Plane turned(const Plane& plane, double angle_deg) {
     const Eigen::Vector3d centre = Eigen::Vector3d::UnitZ() * (-plane.d / plane.normal.z());
     const Eigen::Vector3d axis = plane.normal.unitOrthogonal();
-    const Eigen::Vector3d normal = Eigen::AngleAxisd(angle_deg * 0.0174532925, axis) * plane.normal;
+    const Eigen::Vector3d normal = Eigen::AngleAxisd(radians(angle_deg), axis) * plane.normal;
     return {normal, -normal.dot(centre)};
 }
 

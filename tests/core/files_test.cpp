@@ -17,18 +17,7 @@
 namespace planemap {
 namespace {
 
-using test::TemporaryFolder;
 using testing::HasSubstr;
-
-template <typename Call>
-std::string error_of(Call call) {
-    try {
-        call();
-    } catch (const std::runtime_error& error) {
-        return error.what();
-    }
-    return "";
-}
 
 TEST(Files, BytesSurvive) {
     const test::TemporaryFolder folder;

@@ -15,7 +15,6 @@
 namespace planemap {
 namespace {
 
-using test::TemporaryFolder;
 using testing::AllOf;
 using testing::HasSubstr;
 
@@ -25,12 +24,7 @@ TrajectoryFile read_text(const test::TemporaryFolder& folder, const std::string&
 }
 
 std::string error_of(const test::TemporaryFolder& folder, const std::string& text) {
-    try {
-        read_text(folder, text);
-    } catch (const std::runtime_error& error) {
-        return error.what();
-    }
-    return "no error";
+    return test::error_of([&] { read_text(folder, text); });
 }
 
 constexpr std::int64_t kStart = 1500000000033333;

@@ -13,7 +13,6 @@
 namespace planemap {
 namespace {
 
-using test::TemporaryFolder;
 using testing::HasSubstr;
 
 Trajectory read_text(const test::TemporaryFolder& folder, const std::string& text) {
@@ -22,12 +21,7 @@ Trajectory read_text(const test::TemporaryFolder& folder, const std::string& tex
 }
 
 std::string error_of(const test::TemporaryFolder& folder, const std::string& text) {
-    try {
-        read_text(folder, text);
-    } catch (const std::runtime_error& error) {
-        return error.what();
-    }
-    return "";
+    return test::error_of([&] { read_text(folder, text); });
 }
 
 TEST(Trajectory, WrittenAndReadBack) {

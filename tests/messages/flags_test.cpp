@@ -11,7 +11,6 @@
 namespace planemap {
 namespace {
 
-using test::TemporaryFolder;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <set>
 
+#include "core/angle.hpp"
+
 namespace planemap::simulator {
 namespace {
 
@@ -75,7 +77,7 @@ TEST(DepthSensor, NothingOutsideTheRange) {
 
 TEST(DepthSensor, GrazingReadingsAreLost) {
     const auto share = [](double angle_deg) {
-        const DepthImage depth = sense(wall_at(1.2, angle_deg * 3.14159265 / 180), {});
+        const DepthImage depth = sense(wall_at(1.2, radians(angle_deg)), {});
         int valid = 0;
         for (int v = 100; v < 140; ++v) {
             for (int u = 150; u < 170; ++u) valid += is_valid_depth(depth(u, v)) ? 1 : 0;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/angle.hpp"
+
 namespace planemap::simulator {
 namespace {
 
@@ -61,8 +63,7 @@ TEST(Office, HasAWallAt56Degrees) {
         }
         return Vector3d(0, 0, 0);
     };
-    EXPECT_NEAR(angle_between(normal("north wall"), normal("slanted wall")), 56 * std::numbers::pi / 180,
-                1e-9);
+    EXPECT_NEAR(angle_between(normal("north wall"), normal("slanted wall")), radians(56), 1e-9);
     EXPECT_NEAR(angle_between(normal("floor"), normal("ceiling")), std::numbers::pi, 1e-9);
 }
 

@@ -12,7 +12,6 @@
 namespace planemap {
 namespace {
 
-using test::TemporaryFolder;
 using testing::HasSubstr;
 
 TEST(OutputFile, AnEarlierFileStaysUntilTheNewOneIsWhole) {

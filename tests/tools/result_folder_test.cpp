@@ -20,7 +20,6 @@
 namespace planemap {
 namespace {
 
-using test::TemporaryFolder;
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -30,16 +29,6 @@ const std::vector<std::string> kNames{"a", "b", "c"};
 
 Result text(const std::string& name, const std::string& bytes) {
     return {name, [=](const auto& file) { write_file(file, bytes); }};
-}
-
-template <typename Call>
-std::string error_of(Call call) {
-    try {
-        call();
-    } catch (const std::runtime_error& error) {
-        return error.what();
-    }
-    return "";
 }
 
 /// What lies in a folder, hidden things included.

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "core/angle.hpp"
 #include "core/files.hpp"
 #include "core/trajectory.hpp"
 #include "data_folder.hpp"
@@ -417,8 +418,7 @@ TEST_F(RunTest, TheFloorOfFr3CabinetIsOnePlane) {
         const auto n = plane.at("normal").get<std::vector<double>>();
         const Plane in_truth =
             truth_from_map * Plane{Eigen::Vector3d(n[0], n[1], n[2]), plane.at("d").get<double>()};
-        const double angle =
-            angle_between(in_truth.normal, Eigen::Vector3d::UnitZ()) * 180 / 3.14159265358979;
+        const double angle = degrees(angle_between(in_truth.normal, Eigen::Vector3d::UnitZ()));
         const double area = plane.at("area").get<double>();
         if (angle < 10 && std::abs(in_truth.d) < 0.15 && area > 1.0) ++floors;
         if (area > largest) {

@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench_map/growth.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "bench_map/run.hpp"
 #include "messages/convert.hpp"
 #include "run/input.hpp"
 #include "simulator/simulated_source.hpp"
 
 namespace planemap::bench_map {
+
+using benchmark::figure;
 
 namespace {
 
@@ -25,15 +23,13 @@ double pipeline_ms(Pipeline& pipeline) {
            pipeline.map().status().work_cpu_ms().sum();
 }
 
-GrowthPoint point_at(std::int64_t frames, Pipeline& pipeline) {
+Json point_at(std::int64_t frames, Pipeline& pipeline) {
     const map::PlaneMapper& mapper = pipeline.map().mapper();
-    GrowthPoint point;
-    point.frames = frames;
-    point.keyframes = static_cast<int>(pipeline.keyframes().keyframes.size());
-    point.planes = mapper.map().planes.size();
-    point.message_bytes = static_cast<std::size_t>(to_message(mapper.map(), 0).getEncodedSize());
-    point.memory_bytes = mapper.memory_bytes();
-    return point;
+    return {{"frames", frames},
+            {"keyframes", pipeline.keyframes().keyframes.size()},
+            {"planes", mapper.map().planes.size()},
+            {"message_bytes", to_message(mapper.map(), 0).getEncodedSize()},
+            {"memory_bytes", mapper.memory_bytes()}};
 }
 
 /// Watches a pipeline as its frames come.
@@ -52,11 +48,11 @@ class Observer {
     }
     void note(std::int64_t frames, Pipeline& pipeline) {
         if (frames == frames_) return;
-        GrowthPoint point = point_at(frames, pipeline);
+        Json point = point_at(frames, pipeline);
         const double total_ms = pipeline_ms(pipeline);
-        point.map_ms = map_ms_.median();
-        point.frame_ms = (total_ms - total_ms_) / static_cast<double>(frames - frames_);
-        growth_.points.push_back(point);
+        point["map_ms"] = map_ms_.median();
+        point["frame_ms"] = (total_ms - total_ms_) / static_cast<double>(frames - frames_);
+        growth_.points.push_back(std::move(point));
         map_ms_ = {};
         frames_ = frames;
         total_ms_ = total_ms;
@@ -73,13 +69,12 @@ class Observer {
 
 std::optional<double> Growth::second_round() const {
     if (rounds.size() < 2) return std::nullopt;
-    const auto first = static_cast<double>(rounds[0].message_bytes);
-    return static_cast<double>(rounds[1].message_bytes) / first - 1;
+    return figure(rounds[1], "message_bytes") / figure(rounds[0], "message_bytes") - 1;
 }
 
 std::optional<double> Growth::cost_ratio() const {
     if (points.size() < 3) return std::nullopt;
-    return points.back().frame_ms / points[1].frame_ms;
+    return figure(points.back(), "frame_ms") / figure(points[1], "frame_ms");
 }
 
 std::int64_t frames_a_round(const std::string& simulator_name) {
@@ -101,59 +96,45 @@ Growth measure_growth(const std::string& simulator_name, std::int64_t frames, Pi
     Bus bus("memq://");
     Pipeline pipeline(bus, options);
     const std::unique_ptr<Input> input = open_input(simulator_name, bus, options.camera);
-    while ((frames == 0 || input->frames() < frames) && input->feed()) {
+    feed_all(*input, frames, [&](std::int64_t so_far) {
         pipeline.settle();
-        observer.see(input->frames(), pipeline);
-        on_frame(input->frames());
-    }
+        observer.see(so_far, pipeline);
+        on_frame(so_far);
+    });
     pipeline.finish();
     observer.note(input->frames(), pipeline);
     return growth;
 }
 
-std::string growth_table(const Growth& growth) {
-    std::string text = "frames  keyframes planes  message B   memory B  map ms/keyframe  all ms/frame\n";
-    char line[160];
-    for (const GrowthPoint& p : growth.points) {
-        std::snprintf(line, sizeof(line), "%6lld %10d %6zu %10zu %10zu %16.2f %13.2f\n",
-                      static_cast<long long>(p.frames), p.keyframes, p.planes, p.message_bytes,
-                      p.memory_bytes, p.map_ms, p.frame_ms);
-        text += line;
-    }
-    for (std::size_t i = 0; i < growth.rounds.size(); ++i) {
-        const GrowthPoint& p = growth.rounds[i];
-        std::snprintf(line, sizeof(line), "round %zu ends at frame %lld: %zu planes, %zu bytes\n", i + 1,
-                      static_cast<long long>(p.frames), p.planes, p.message_bytes);
-        text += line;
-    }
-    if (const auto added = growth.second_round()) {
-        std::snprintf(line, sizeof(line), "the second round adds %.1f %% to the message\n", 100 * *added);
-        text += line;
-    }
-    if (const auto ratio = growth.cost_ratio()) {
-        std::snprintf(line, sizeof(line), "a frame of the last thousand costs %.2f times one of the second\n",
-                      *ratio);
-        text += line;
-    }
-    return text;
+Json to_json(const std::string& sequence, const Growth& growth) {
+    const auto itself = [](double value) { return value; };
+    Json json{{"sequence", sequence}, {"points", growth.points}};
+    json["second_round_share"] = benchmark::known(growth.second_round(), itself);
+    json["cost_ratio"] = benchmark::known(growth.cost_ratio(), itself);
+    return json;
 }
 
-nlohmann::ordered_json to_json(const std::string& sequence, const Growth& growth) {
-    nlohmann::ordered_json json{{"sequence", sequence}, {"points", nlohmann::ordered_json::array()}};
-    for (const GrowthPoint& p : growth.points) {
-        json["points"].push_back({{"frames", p.frames},
-                                  {"keyframes", p.keyframes},
-                                  {"planes", p.planes},
-                                  {"message_bytes", p.message_bytes},
-                                  {"memory_bytes", p.memory_bytes},
-                                  {"map_ms", p.map_ms},
-                                  {"frame_ms", p.frame_ms}});
+std::string growth_table(const Growth& growth) {
+    using benchmark::text;
+    const benchmark::Table table{{"frames", "frames", 6},
+                                 {"keyframes", "keyframes", 10},
+                                 {"planes", "planes", 6},
+                                 {"message B", "message_bytes", 10},
+                                 {"memory B", "memory_bytes", 10},
+                                 {"map ms/keyframe", "map_ms", 16, 2},
+                                 {"all ms/frame", "frame_ms", 13, 2}};
+    std::string lines = table.heading();
+    for (const Json& point : growth.points) lines += table.line(point);
+    for (std::size_t i = 0; i < growth.rounds.size(); ++i) {
+        const Json& round = growth.rounds[i];
+        lines += text("round %zu ends at frame %.0f: %.0f planes, %.0f bytes\n", i + 1,
+                      figure(round, "frames"), figure(round, "planes"), figure(round, "message_bytes"));
     }
-    json["second_round_share"] = nullptr;
-    json["cost_ratio"] = nullptr;
-    if (const auto added = growth.second_round()) json["second_round_share"] = *added;
-    if (const auto ratio = growth.cost_ratio()) json["cost_ratio"] = *ratio;
-    return json;
+    if (const auto added = growth.second_round())
+        lines += text("the second round adds %.1f %% to the message\n", 100 * *added);
+    if (const auto ratio = growth.cost_ratio())
+        lines += text("a frame of the last thousand costs %.2f times one of the second\n", *ratio);
+    return lines;
 }
 
 }  // namespace planemap::bench_map

@@ -4,27 +4,23 @@
 
 #include <cstdint>
 #include <functional>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "benchmark/table.hpp"
 #include "pipeline/pipeline.hpp"
 
 namespace planemap::bench_map {
 
-/// What there is after so many frames.
-struct GrowthPoint {
-    std::int64_t frames = 0;
-    int keyframes = 0;
-    std::size_t planes = 0, message_bytes = 0, memory_bytes = 0;
-    double map_ms = 0;    ///< CPU time of the mapper, a keyframe: median since the point before
-    double frame_ms = 0;  ///< CPU time of all modules, a frame: mean since the point before
-};
+using benchmark::Json;
 
+/// A point is what there is after so many frames: frames, keyframes, planes, message_bytes, memory_bytes, and
+/// since the point before map_ms (CPU time of the mapper, a keyframe: median) and frame_ms (CPU time of all
+/// modules, a frame: mean).
 struct Growth {
-    std::vector<GrowthPoint> points;  ///< every thousand frames, and the last
-    std::vector<GrowthPoint> rounds;  ///< at the end of each whole round; without times
+    std::vector<Json> points;  ///< every thousand frames, and the last
+    std::vector<Json> rounds;  ///< at the end of each whole round; without times
     /// Bytes of the message that the second round added, as a share of the first's.
     std::optional<double> second_round() const;
     /// Cost of a frame between the last two points, over the cost of one between the first two. The first
@@ -42,6 +38,6 @@ Growth measure_growth(const std::string& simulator_name, std::int64_t frames, Pi
                       const std::function<void(std::int64_t)>& on_frame);
 
 std::string growth_table(const Growth& growth);
-nlohmann::ordered_json to_json(const std::string& sequence, const Growth& growth);
+Json to_json(const std::string& sequence, const Growth& growth);
 
 }  // namespace planemap::bench_map

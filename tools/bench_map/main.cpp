@@ -1,21 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // planemap-bench-map: maps beside the true planes.
 #include <algorithm>
-#include <cstdio>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "bench_map/growth.hpp"
 #include "bench_map/row.hpp"
-#include "bench_map/sequences.hpp"
 #include "bench_map/true_poses.hpp"
-#include "benchmark/build_info.hpp"
+#include "bench_map/truth.hpp"
 #include "benchmark/choices.hpp"
-#include "benchmark/data_folder.hpp"
-#include "messages/process.hpp"
-#include "results/output_file.hpp"
+#include "benchmark/report.hpp"
 
 namespace planemap::bench_map {
+
+using benchmark::SequenceInfo;
+
 namespace {
 
 constexpr const char* kProgram = "planemap-bench-map";
@@ -31,13 +29,15 @@ const std::vector<PosesInfo>& known_poses() {
     return kPoses;
 }
 
-struct Arguments {
-    std::string sequences = kDefaultSequences, poses = names_of(known_poses());
-    std::filesystem::path data = default_data_folder(), json;
-    int frames = 0;
-    bool growth = false, no_octomap = false, verbose = false, quiet = false;
+struct Arguments : benchmark::Options {
+    std::string poses = benchmark::names_of(known_poses());
+    bool growth = false, no_octomap = false, verbose = false;
     PipelineOptions pipeline;
 };
+
+/// At walking speed, more than two rounds.
+const std::vector<SequenceInfo> kKnownSequences{
+    {"sim:building", "", "building?speed=0.8&turn=60&frames=10000", "", 0}};
 
 std::string description() {
     return "Maps of planes beside the true planes of simulated worlds, and beside the depth of recordings.\n"
@@ -49,7 +49,7 @@ std::string description() {
            "data\n"
            "folder, other folders in TUM's layout, LCM logs. sim:building alone is 10,000 frames.\n"
            "Poses:\n" +
-           described(known_poses(), 11) +
+           benchmark::described(known_poses(), 11) +
            "A true plane is all that lies on one plane and whose visible parts have boxes within 0.5 m of "
            "each\n"
            "other. Its visible surface is what every fifth frame shows within the sensor's range and less "
@@ -86,26 +86,15 @@ std::string description() {
 }
 
 void add_flags(Flags& flags, Arguments& arguments) {
-    flags.add("sequences", arguments.sequences, "comma-separated, see above");
+    benchmark::add_flags(flags, arguments, "frames a sequence, from its start; 0: all");
     flags.add("poses", arguments.poses, "comma-separated, see above");
-    flags.add("frames", arguments.frames, "frames a sequence, from its start; 0: all");
-    flags.add("data", arguments.data, "folder of the recordings; default: $PLANEMAP_DATA, or ../shared/data");
-    flags.add("json", arguments.json,
-              "write the rows to this file, or to - (standard output; tables then go to stderr)");
     flags.add("growth", arguments.growth, "how the map grows instead, for simulated walks that go round");
     flags.add("no-octomap", arguments.no_octomap, "no OctoMap to compare with: faster");
     flags.add("v,verbose", arguments.verbose, "list every true plane");
-    flags.add("q,quiet", arguments.quiet, "no progress on stderr");
     flags.add(options_of(arguments.pipeline.segmentation), "segmentation-");
     flags.add(options_of(arguments.pipeline.odometry), "odometry-");
     flags.add(options_of(arguments.pipeline.graph), "graph-");
     flags.add(options_of(arguments.pipeline.map.map), "map-");
-}
-
-/// Says on stderr how far a sequence is, every 100 frames.
-void show_progress(const Arguments& arguments, const std::string& sequence, std::int64_t frames) {
-    if (!arguments.quiet && frames > 0 && frames % 100 == 0)
-        std::fprintf(stderr, "%s, frame %lld\n", sequence.c_str(), static_cast<long long>(frames));
 }
 
 /// The rows of one sequence, for the kinds of poses that were asked for.
@@ -119,21 +108,20 @@ std::vector<Row> rows_of(const Arguments& arguments, const std::vector<PosesInfo
     options.true_poses = wanted("true");
     options.pipeline = arguments.pipeline;
     options.pipeline.with_octomap = !arguments.no_octomap;
-    SequenceRun run = run_sequence(
-        input, options, [&](std::int64_t frames, Pipeline&) { show_progress(arguments, sequence, frames); });
+    SequenceRun run = run_sequence(input, options, benchmark::frame_counter(sequence, arguments.quiet));
     const std::optional<std::vector<TruePlane>> truth = true_planes(input, arguments.frames);
     std::vector<Row> rows;
     if (wanted("estimated")) {
         Row& row = rows.emplace_back(Row{sequence, "estimated", run.estimated, std::nullopt, {}});
         if (truth && run.truth) {
             const auto truth_from_map = alignment(at_poses(run.keyframes, *run.truth), row.run.poses);
-            if (truth_from_map) row.judgement = judge(*truth, row.run.map, *truth_from_map);
+            if (truth_from_map) row.judgement = evaluation::judge(*truth, row.run.map, *truth_from_map);
         }
     }
     if (run.true_poses) {
         Row& row = rows.emplace_back(Row{sequence, "true", std::move(*run.true_poses), std::nullopt, {}});
         if (truth) {
-            row.judgement = judge(*truth, row.run.map, Pose::Identity());
+            row.judgement = evaluation::judge(*truth, row.run.map, Pose::Identity());
         } else {
             row.surfaces =
                 check_surfaces(input, arguments.frames, options.pipeline.camera, row.run.map, *run.truth);
@@ -142,63 +130,48 @@ std::vector<Row> rows_of(const Arguments& arguments, const std::vector<PosesInfo
     return rows;
 }
 
-/// Runs the sequences; prints and keeps each row as it comes.
-nlohmann::ordered_json print_rows(const Arguments& arguments, const std::vector<std::string>& sequences,
-                                  OutputFile& output) {
-    std::FILE* out = output.for_people();
-    const std::vector<PosesInfo> poses = chosen("poses", arguments.poses, known_poses());
-    nlohmann::ordered_json json = nlohmann::ordered_json::array();
-    std::vector<Row> all;
+void report_maps(const Arguments& arguments, const std::vector<SequenceInfo>& sequences,
+                 benchmark::Report& report) {
+    const std::vector<PosesInfo> poses = benchmark::chosen("poses", arguments.poses, known_poses());
     std::string remarks;
-    std::fprintf(out, "\n%s", table_heading().c_str());
-    for (const std::string& sequence : sequences) {
-        std::string missing;
-        const std::optional<std::string> input = input_of(sequence, arguments.data, missing);
-        if (!input) {
-            std::fprintf(out, "%s: skipped. %s\n", sequence.c_str(), missing.c_str());
-            continue;
-        }
-        for (Row& row : rows_of(arguments, poses, sequence, *input)) {
-            std::fputs(table_line(row).c_str(), out);
+    report.print("\n");
+    report.print(table().heading());
+    report.for_each(sequences, [&](const SequenceInfo& sequence) {
+        for (const Row& row :
+             rows_of(arguments, poses, sequence.name, benchmark::input_of(sequence, arguments.data))) {
+            report.add(to_json(row), table());
             remarks += details(row, arguments.verbose);
-            json.push_back(to_json(row));
-            all.push_back(std::move(row));
         }
-        std::fflush(out);
-        // After each sequence: what was measured is kept if a later one fails.
-        output.keep(json.dump(1) + "\n");
-    }
-    std::fprintf(out, "\n%s\n%s", goals(all).c_str(), remarks.c_str());
-    return json;
+    });
+    report.print("\n");
+    report.print(goals(report.rows()));
+    report.print("\n");
+    report.print(remarks);
 }
 
-nlohmann::ordered_json print_growth(const Arguments& arguments, const std::vector<std::string>& sequences,
-                                    std::FILE* out) {
-    nlohmann::ordered_json json = nlohmann::ordered_json::array();
-    for (const std::string& sequence : sequences) {
-        std::string missing;
-        const std::optional<std::string> input = input_of(sequence, arguments.data, missing);
-        if (!input || !input->starts_with("sim:"))
-            throw std::invalid_argument(sequence + ": --growth is for simulated walks");
+void report_growth(const Arguments& arguments, const std::vector<SequenceInfo>& sequences,
+                   benchmark::Report& report) {
+    for (const SequenceInfo& sequence : sequences)
+        if (sequence.simulator.empty())
+            throw std::invalid_argument(sequence.name + ": --growth is for simulated walks");
+    report.for_each(sequences, [&](const SequenceInfo& sequence) {
         const Growth growth =
-            measure_growth(*input, arguments.frames, arguments.pipeline,
-                           [&](std::int64_t frames) { show_progress(arguments, sequence, frames); });
-        std::fprintf(out, "\n%s\n%s", sequence.c_str(), growth_table(growth).c_str());
-        json.push_back(to_json(sequence, growth));
-    }
-    return json;
+            measure_growth(benchmark::input_of(sequence, arguments.data), arguments.frames,
+                           arguments.pipeline, benchmark::frame_counter(sequence.name, arguments.quiet));
+        report.print("\n" + sequence.name + "\n" + growth_table(growth));
+        report.add(to_json(sequence.name, growth));
+    });
 }
 
 int run(const Arguments& arguments) {
-    if (arguments.frames < 0)
-        throw std::invalid_argument("frames: " + std::to_string(arguments.frames) + ", must be at least 0");
-    const std::vector<std::string> sequences = parse_sequences(arguments.sequences);
-    OutputFile output(arguments.json);
-    std::FILE* out = output.for_people();
-    std::fputs(build_info("none: the truth is exact").c_str(), out);
-    const nlohmann::ordered_json json =
-        arguments.growth ? print_growth(arguments, sequences, out) : print_rows(arguments, sequences, output);
-    output.finish(json.dump(1) + "\n");
+    FieldErrors errors("benchmark options");
+    arguments.check(errors);
+    errors.throw_if_any();
+    const std::vector<SequenceInfo> sequences =
+        benchmark::parse_sequences(arguments.sequences, kKnownSequences, benchmark::Unknown::kIsPath);
+    benchmark::Report report(arguments, "none: the truth is exact");
+    (arguments.growth ? report_growth : report_maps)(arguments, sequences, report);
+    report.finish();
     return 0;
 }
 
@@ -206,12 +179,11 @@ int run(const Arguments& arguments) {
 }  // namespace planemap::bench_map
 
 int main(int argc, char** argv) {
-    using namespace planemap::bench_map;
-    Arguments arguments;
-    planemap::Flags flags(kProgram, description());
-    add_flags(flags, arguments);
-    const int parsed = flags.parse(argc, argv);
-    if (parsed >= 0) return parsed;
-    planemap::start_logging(kProgram, false);
-    return planemap::run_main(kProgram, [&] { return run(arguments); });
+    using namespace planemap;
+    bench_map::Arguments arguments;
+    arguments.sequences = "sim:office?seed=1..5,redkitchen";
+    return benchmark::run_program(
+        bench_map::kProgram, bench_map::description(), argc, argv,
+        [&](Flags& flags) { bench_map::add_flags(flags, arguments); },
+        [&] { return bench_map::run(arguments); });
 }

@@ -3,63 +3,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <limits>
-#include <nlohmann/json.hpp>
-#include <numeric>
 
 namespace planemap::bench_map {
 
 namespace {
 
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+using namespace evaluation;
+using benchmark::cell;
+using benchmark::figure;
+using benchmark::known;
+using benchmark::text;
+
 constexpr std::size_t kWorstPairs = 5;
-
-using Json = nlohmann::ordered_json;
-
-/// As printf().
-template <typename... Values>
-std::string text(const char* format, Values... values) {
-    char line[256];
-    std::snprintf(line, sizeof(line), format, values...);
-    return line;
-}
-
-/// A number right-aligned in `width` characters; "-" if it is not known.
-std::string cell(double value, int width, int decimals) {
-    return std::isfinite(value) ? text("%*.*f", width, decimals, value) : text("%*s", width, "-");
-}
-
-/// JSON has no NaN.
-Json number(double value) {
-    if (!std::isfinite(value)) return nullptr;
-    return value;
-}
-Json count(double value) {
-    if (!std::isfinite(value)) return nullptr;
-    return std::lround(value);
-}
-
-std::optional<ErrorFigures> figures_of(std::vector<double> values) {
-    if (values.empty()) return std::nullopt;
-    std::sort(values.begin(), values.end());
-    const std::size_t n = values.size();
-    return ErrorFigures{std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(n),
-                        0.5 * (values[(n - 1) / 2] + values[n / 2]), values.back()};
-}
-
-/// The figures of a row that may be unknown: NaN.
-struct Figures {
-    double planes_true = kUnknown, found = kUnknown, split = kUnknown, spurious = kUnknown;
-    ErrorFigures metres{kUnknown, kUnknown, kUnknown}, percent = metres, degrees = metres;
-    double distance_pairs = kUnknown, angle_pairs = kUnknown;
-    double iou = kUnknown, iou_worst = kUnknown;
-    double leaves_explained = kUnknown, area_supported = kUnknown;
-    double surface_angle_worst = kUnknown, surface_angle_mean = kUnknown;
-    double surface_distance_worst = kUnknown, surface_distance_mean = kUnknown;
-    double message_kb = kUnknown, memory_per_message = kUnknown, update_ms = kUnknown;
-    bool true_poses = false;
-};
 
 /// The found plane with the worst outline; nullptr without one.
 const TruePlaneVerdict* worst_outline(const Judgement& judgement) {
@@ -69,46 +24,38 @@ const TruePlaneVerdict* worst_outline(const Judgement& judgement) {
     return worst;
 }
 
-void add_judgement(const Judgement& judgement, Figures& f) {
-    f.planes_true = static_cast<double>(judgement.seen());
-    f.found = static_cast<double>(judgement.found());
-    f.split = static_cast<double>(judgement.split());
-    f.spurious = static_cast<double>(judgement.spurious.size());
-    f.metres = errors_of(judgement.distances).value_or(f.metres);
-    f.percent = relative_errors_of(judgement.distances).value_or(f.percent);
-    f.degrees = errors_of(judgement.angles).value_or(f.degrees);
-    f.distance_pairs = static_cast<double>(judgement.distances.size());
-    f.angle_pairs = static_cast<double>(judgement.angles.size());
-    f.iou = judgement.outline_iou().value_or(kUnknown);
-    if (const TruePlaneVerdict* worst = worst_outline(judgement)) f.iou_worst = worst->iou;
+/// One of the figures; null for no values.
+Json of(const Statistics& errors, double Statistics::*figure) {
+    return errors.count > 0 ? Json(errors.*figure) : Json(nullptr);
 }
 
-Figures figures_of(const Row& row) {
-    Figures f;
-    f.true_poses = row.poses == "true";
-    if (row.run.message_bytes > 0) f.message_kb = static_cast<double>(row.run.message_bytes) / 1000;
-    f.memory_per_message =
-        static_cast<double>(row.run.memory_bytes) / static_cast<double>(row.run.message_bytes);
-    if (!row.run.poses.keyframes.empty()) f.update_ms = row.run.update_median_ms;
-    if (row.judgement) add_judgement(*row.judgement, f);
-    if (row.run.coverage) {
-        f.leaves_explained = row.run.coverage->leaves_explained;
-        f.area_supported = row.run.coverage->area_supported;
+void add_errors(const Judgement* judgement, Json& json) {
+    const std::vector<PairMeasure> none;
+    const std::vector<PairMeasure>& distances = judgement != nullptr ? judgement->distances : none;
+    const std::vector<PairMeasure>& angles = judgement != nullptr ? judgement->angles : none;
+    const Statistics metres = errors_of(distances), degrees = errors_of(angles);
+    json["distance_pairs"] = judgement != nullptr ? Json(distances.size()) : Json(nullptr);
+    json["distance_error_mean_m"] = of(metres, &Statistics::mean);
+    json["distance_error_median_m"] = of(metres, &Statistics::median);
+    json["distance_error_worst_m"] = of(metres, &Statistics::max);
+    json["distance_error_mean_percent"] = of(relative_errors_of(distances), &Statistics::mean);
+    json["angle_pairs"] = judgement != nullptr ? Json(angles.size()) : Json(nullptr);
+    json["angle_error_mean_deg"] = of(degrees, &Statistics::mean);
+    json["angle_error_median_deg"] = of(degrees, &Statistics::median);
+    json["angle_error_worst_deg"] = of(degrees, &Statistics::max);
+}
+
+void add_surfaces(const std::vector<SurfaceCheck>& surfaces, Json& json) {
+    std::vector<double> degrees, metres;
+    for (const SurfaceCheck& check : surfaces) {
+        degrees.push_back(check.angle_deg);
+        metres.push_back(check.distance_m);
     }
-    std::vector<double> angles, distances;
-    for (const SurfaceCheck& check : row.surfaces) {
-        angles.push_back(check.angle_deg);
-        distances.push_back(check.distance_m);
-    }
-    if (const auto figures = figures_of(std::move(angles))) {
-        f.surface_angle_mean = figures->mean;
-        f.surface_angle_worst = figures->worst;
-    }
-    if (const auto figures = figures_of(std::move(distances))) {
-        f.surface_distance_mean = figures->mean;
-        f.surface_distance_worst = figures->worst;
-    }
-    return f;
+    const Statistics angle = statistics(std::move(degrees)), distance = statistics(std::move(metres));
+    json["surface_angle_worst_deg"] = of(angle, &Statistics::max);
+    json["surface_angle_mean_deg"] = of(angle, &Statistics::mean);
+    json["surface_distance_worst_m"] = of(distance, &Statistics::max);
+    json["surface_distance_mean_m"] = of(distance, &Statistics::mean);
 }
 
 /// "wall (12)": a true plane and the map plane that it was found as.
@@ -180,67 +127,130 @@ std::string judgement_details(const Judgement& judgement, bool all) {
     return lines;
 }
 
+double found_share(const Json& row, const char* found) {
+    return figure(row, found) / figure(row, "planes_true");
+}
+double messages(const Json& row, const char* bytes) {
+    return figure(row, bytes) / figure(row, "message_bytes");
+}
+double kilobytes(const Json& row, const char* bytes) {
+    return row.at(bytes) == 0 ? NAN : figure(row, bytes) / 1000;
+}
+double of_keyframes(const Json& row, const char* key) {
+    return row.at("keyframes") == 0 ? NAN : figure(row, key);
+}
+double at_true_poses(const Json& row, const char* key) {
+    return row.at("poses") == "true" ? figure(row, key) : NAN;
+}
+double at_estimated_poses(const Json& row, const char* key) {
+    return row.at("poses") == "true" ? NAN : figure(row, key);
+}
+
 struct Goal {
     const char* what;
     bool at_least;  ///< or at most
     double bound;
-    double (*figure)(const Figures&);
     int decimals;
+    const char* key;  ///< of a row's JSON
+    double (*measure)(const Json& row, const char* key) = figure;
 };
 
 constexpr Goal kGoals[] = {
-    {"true planes found, share", true, 1, [](const Figures& f) { return f.found / f.planes_true; }, 3},
-    {"map planes too many (split)", false, 0, [](const Figures& f) { return f.split; }, 0},
-    {"spurious map planes", false, 0, [](const Figures& f) { return f.spurious; }, 0},
-    {"distance error, mean, m", false, 0.01, [](const Figures& f) { return f.metres.mean; }, 4},
-    {"distance error, mean, % (the paper: up to 6)", false, 1,
-     [](const Figures& f) { return f.percent.mean; }, 2},
-    {"angle error, mean, deg (the paper: up to 2.5)", false, 0.3,
-     [](const Figures& f) { return f.true_poses ? kUnknown : f.degrees.mean; }, 2},
-    {"the same with true poses", false, 0.15,
-     [](const Figures& f) { return f.true_poses ? f.degrees.mean : kUnknown; }, 2},
-    {"outline IoU", true, 0.9, [](const Figures& f) { return f.iou; }, 3},
-    {"leaves explained, share", true, 0.75, [](const Figures& f) { return f.leaves_explained; }, 3},
-    {"area supported, share", true, 0.9, [](const Figures& f) { return f.area_supported; }, 3},
-    {"message, kB", false, 8, [](const Figures& f) { return f.message_kb; }, 1},
-    {"memory, messages", false, 2, [](const Figures& f) { return f.memory_per_message; }, 2},
-    {"update of a keyframe, median, ms", false, 1, [](const Figures& f) { return f.update_ms; }, 2},
-    {"surface angle, worst, deg", false, 0.5, [](const Figures& f) { return f.surface_angle_worst; }, 2},
-    {"surface distance, worst, m", false, 0.01, [](const Figures& f) { return f.surface_distance_worst; }, 4},
+    {"true planes found, share", true, 1, 3, "found", found_share},
+    {"map planes too many (split)", false, 0, 0, "split"},
+    {"spurious map planes", false, 0, 0, "spurious"},
+    {"distance error, mean, m", false, 0.01, 4, "distance_error_mean_m"},
+    {"distance error, mean, % (the paper: up to 6)", false, 1, 2, "distance_error_mean_percent"},
+    {"angle error, mean, deg (the paper: up to 2.5)", false, 0.3, 2, "angle_error_mean_deg",
+     at_estimated_poses},
+    {"the same with true poses", false, 0.15, 2, "angle_error_mean_deg", at_true_poses},
+    {"outline IoU", true, 0.9, 3, "outline_iou"},
+    {"leaves explained, share", true, 0.75, 3, "leaves_explained"},
+    {"area supported, share", true, 0.9, 3, "area_supported"},
+    {"message, kB", false, 8, 1, "message_bytes", kilobytes},
+    {"memory, messages", false, 2, 2, "memory_bytes", messages},
+    {"update of a keyframe, median, ms", false, 1, 2, "update_median_ms", of_keyframes},
+    {"surface angle, worst, deg", false, 0.5, 2, "surface_angle_worst_deg"},
+    {"surface distance, worst, m", false, 0.01, 4, "surface_distance_worst_m"},
 };
 
 }  // namespace
 
-std::optional<ErrorFigures> errors_of(const std::vector<PairMeasure>& pairs) {
+Statistics errors_of(const std::vector<PairMeasure>& pairs) {
     std::vector<double> errors;
     for (const PairMeasure& pair : pairs) errors.push_back(pair.error());
-    return figures_of(std::move(errors));
+    return statistics(std::move(errors));
 }
 
-std::optional<ErrorFigures> relative_errors_of(const std::vector<PairMeasure>& pairs) {
+Statistics relative_errors_of(const std::vector<PairMeasure>& pairs) {
     std::vector<double> errors;
     for (const PairMeasure& pair : pairs) errors.push_back(100 * pair.error() / pair.truth);
-    return figures_of(std::move(errors));
+    return statistics(std::move(errors));
 }
 
-std::string table_heading() {
-    return "sequence             poses        kf planes | true found split spur |  dist mm  med worst     % "
-           "| "
-           "ang deg   med worst |   IoU worst | leaves  area |    msg B    mem B |  upd ms   p95 rebuild\n";
+Json to_json(const Row& row) {
+    const std::optional<Judgement>& judged = row.judgement;
+    const TruePlaneVerdict* worst = judged ? worst_outline(*judged) : nullptr;
+    Json json;
+    json["sequence"] = row.sequence;
+    json["poses"] = row.poses;
+    json["keyframes"] = row.run.poses.keyframes.size();
+    json["planes"] = row.run.map.planes.size();
+    json["planes_true"] = known(judged, [](const Judgement& j) { return j.seen(); });
+    json["found"] = known(judged, [](const Judgement& j) { return j.found(); });
+    json["split"] = known(judged, [](const Judgement& j) { return j.split(); });
+    json["spurious"] = known(judged, [](const Judgement& j) { return j.spurious.size(); });
+    add_errors(judged ? &*judged : nullptr, json);
+    json["outline_iou"] = benchmark::number(judged ? judged->outline_iou().value_or(NAN) : NAN);
+    json["outline_iou_worst"] = benchmark::number(worst != nullptr ? worst->iou : NAN);
+    json["leaves_explained"] =
+        known(row.run.coverage, [](const Coverage& coverage) { return coverage.leaves_explained; });
+    json["area_supported"] =
+        known(row.run.coverage, [](const Coverage& coverage) { return coverage.area_supported; });
+    json["message_bytes"] = row.run.message_bytes;
+    json["memory_bytes"] = row.run.memory_bytes;
+    json["update_median_ms"] = benchmark::number(row.run.update_median_ms);
+    json["update_p95_ms"] = benchmark::number(row.run.update_p95_ms);
+    json["rebuild_ms"] = benchmark::number(row.run.rebuild_ms);
+    add_surfaces(row.surfaces, json);
+    return json;
 }
 
-std::string table_line(const Row& row) {
-    const Figures f = figures_of(row);
-    return text("%-20s %-9s %5zu %6zu", row.sequence.c_str(), row.poses.c_str(),
-                row.run.poses.keyframes.size(), row.run.map.planes.size()) +
-           " | " + cell(f.planes_true, 4, 0) + cell(f.found, 6, 0) + cell(f.split, 6, 0) +
-           cell(f.spurious, 5, 0) + " | " + cell(1e3 * f.metres.mean, 8, 1) +
-           cell(1e3 * f.metres.median, 5, 0) + cell(1e3 * f.metres.worst, 6, 0) + cell(f.percent.mean, 6, 2) +
-           " | " + cell(f.degrees.mean, 7, 2) + cell(f.degrees.median, 6, 2) + cell(f.degrees.worst, 6, 2) +
-           " | " + cell(f.iou, 5, 3) + cell(f.iou_worst, 6, 3) + " | " + cell(f.leaves_explained, 6, 3) +
-           cell(f.area_supported, 6, 3) + text(" | %8zu %8zu", row.run.message_bytes, row.run.memory_bytes) +
-           " | " + cell(row.run.update_median_ms, 7, 2) + cell(row.run.update_p95_ms, 6, 1) +
-           cell(row.run.rebuild_ms, 8, 1) + "\n";
+const benchmark::Table& table() {
+    using benchmark::kBar;
+    using benchmark::milli;
+    static const benchmark::Table kTable{{"sequence", "sequence", -20},
+                                         {"poses", "poses", -9},
+                                         {"kf", "keyframes", 5},
+                                         {"planes", "planes", 6},
+                                         kBar,
+                                         {"true", "planes_true", 4},
+                                         {"found", "found", 5},
+                                         {"split", "split", 5},
+                                         {"spur", "spurious", 4},
+                                         kBar,
+                                         {"dist mm", "distance_error_mean_m", 8, 1, milli},
+                                         {"med", "distance_error_median_m", 4, 0, milli},
+                                         {"worst", "distance_error_worst_m", 5, 0, milli},
+                                         {"%", "distance_error_mean_percent", 5, 2},
+                                         kBar,
+                                         {"ang deg", "angle_error_mean_deg", 7, 2},
+                                         {"med", "angle_error_median_deg", 5, 2},
+                                         {"worst", "angle_error_worst_deg", 5, 2},
+                                         kBar,
+                                         {"IoU", "outline_iou", 5, 3},
+                                         {"worst", "outline_iou_worst", 5, 3},
+                                         kBar,
+                                         {"leaves", "leaves_explained", 6, 3},
+                                         {"area", "area_supported", 5, 3},
+                                         kBar,
+                                         {"msg B", "message_bytes", 8},
+                                         {"mem B", "memory_bytes", 8},
+                                         kBar,
+                                         {"upd ms", "update_median_ms", 7, 2},
+                                         {"p95", "update_p95_ms", 5, 1},
+                                         {"rebuild", "rebuild_ms", 7, 1}};
+    return kTable;
 }
 
 std::string details(const Row& row, bool all) {
@@ -253,16 +263,16 @@ std::string details(const Row& row, bool all) {
     return row.sequence + ", " + row.poses + " poses\n" + lines;
 }
 
-std::string goals(const std::vector<Row>& rows) {
+std::string goals(const std::vector<Json>& rows) {
     std::string lines;
     for (const Goal& goal : kGoals) {
         std::string measured;
         bool met = true;
-        for (const Row& row : rows) {
-            const double figure = goal.figure(figures_of(row));
-            if (!std::isfinite(figure)) continue;
-            met = met && (goal.at_least ? figure >= goal.bound : figure <= goal.bound);
-            measured.append(" ").append(cell(figure, 0, goal.decimals));
+        for (const Json& row : rows) {
+            const double value = goal.measure(row, goal.key);
+            if (!std::isfinite(value)) continue;
+            met = met && (goal.at_least ? value >= goal.bound : value <= goal.bound);
+            measured.append(" ").append(cell(value, 0, goal.decimals));
         }
         if (measured.empty()) continue;
         lines += text("  %-47s %s %-5g %s:", goal.what, goal.at_least ? ">=" : "<=", goal.bound,
@@ -270,42 +280,6 @@ std::string goals(const std::vector<Row>& rows) {
                  measured + "\n";
     }
     return lines.empty() ? lines : "Goals, and the rows' figures\n" + lines;
-}
-
-Json to_json(const Row& row) {
-    const Figures f = figures_of(row);
-    Json json;
-    json["sequence"] = row.sequence;
-    json["poses"] = row.poses;
-    json["keyframes"] = row.run.poses.keyframes.size();
-    json["planes"] = row.run.map.planes.size();
-    json["planes_true"] = count(f.planes_true);
-    json["found"] = count(f.found);
-    json["split"] = count(f.split);
-    json["spurious"] = count(f.spurious);
-    json["distance_pairs"] = count(f.distance_pairs);
-    json["distance_error_mean_m"] = number(f.metres.mean);
-    json["distance_error_median_m"] = number(f.metres.median);
-    json["distance_error_worst_m"] = number(f.metres.worst);
-    json["distance_error_mean_percent"] = number(f.percent.mean);
-    json["angle_pairs"] = count(f.angle_pairs);
-    json["angle_error_mean_deg"] = number(f.degrees.mean);
-    json["angle_error_median_deg"] = number(f.degrees.median);
-    json["angle_error_worst_deg"] = number(f.degrees.worst);
-    json["outline_iou"] = number(f.iou);
-    json["outline_iou_worst"] = number(f.iou_worst);
-    json["leaves_explained"] = number(f.leaves_explained);
-    json["area_supported"] = number(f.area_supported);
-    json["message_bytes"] = row.run.message_bytes;
-    json["memory_bytes"] = row.run.memory_bytes;
-    json["update_median_ms"] = number(row.run.update_median_ms);
-    json["update_p95_ms"] = number(row.run.update_p95_ms);
-    json["rebuild_ms"] = number(row.run.rebuild_ms);
-    json["surface_angle_worst_deg"] = number(f.surface_angle_worst);
-    json["surface_angle_mean_deg"] = number(f.surface_angle_mean);
-    json["surface_distance_worst_m"] = number(f.surface_distance_worst);
-    json["surface_distance_mean_m"] = number(f.surface_distance_mean);
-    return json;
 }
 
 }  // namespace planemap::bench_map

@@ -38,7 +38,7 @@ Coverage coverage_at(const MapRun& run, OctomapBuilder& octomap) {
 }  // namespace
 
 SequenceRun run_sequence(const std::string& input_name, const RunOptions& options,
-                         const std::function<void(std::int64_t, Pipeline&)>& on_frame) {
+                         const std::function<void(std::int64_t)>& on_frame) {
     SequenceRun run;
     Bus bus("memq://");
     Pipeline pipeline(bus, options.pipeline);
@@ -47,11 +47,10 @@ SequenceRun run_sequence(const std::string& input_name, const RunOptions& option
         run.keyframes.back().features = {};
     });
     const std::unique_ptr<Input> input = open_input(input_name, bus, options.pipeline.camera);
-    on_frame(0, pipeline);
-    while ((options.frames == 0 || input->frames() < options.frames) && input->feed()) {
+    feed_all(*input, options.frames, [&](std::int64_t frames) {
         pipeline.settle();
-        on_frame(input->frames(), pipeline);
-    }
+        on_frame(frames);
+    });
     pipeline.finish();
     if (run.keyframes.empty()) throw std::runtime_error(input_name + ": no keyframe in it");
     run.frames = input->frames();

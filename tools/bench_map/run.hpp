@@ -38,9 +38,9 @@ struct RunOptions {
 };
 
 /// The pipeline over a sequence (as planemap-run takes it), once for both maps. Calls `on_frame` with the
-/// frames so far, also before the first. Throws as open_input().
+/// frames so far. Throws as open_input().
 SequenceRun run_sequence(const std::string& input, const RunOptions& options,
-                         const std::function<void(std::int64_t frames, Pipeline&)>& on_frame);
+                         const std::function<void(std::int64_t frames)>& on_frame);
 
 /// A map of keyframes where the poses say, one after the other as they would arrive; without coverage.
 /// Keyframes without a pose are left out.

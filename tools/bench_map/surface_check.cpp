@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
-#include "bench_map/true_poses.hpp"
+#include "benchmark/readings.hpp"
+#include "core/angle.hpp"
 #include "messages/channels.hpp"
 #include "messages/frame_decoder.hpp"
 #include "pipeline/given_poses.hpp"
@@ -41,20 +41,16 @@ SurfaceChecker::SurfaceChecker(const PlaneMap& map) {
 
 void SurfaceChecker::add(const DepthImage& depth, const CameraInfo& camera, const Pose& world_from_color) {
     const Pose world_from_depth = world_from_color * camera.color_from_depth;
-    for (int v = 0; v < depth.height; ++v) {
-        for (int u = 0; u < depth.width; ++u) {
-            const double z = camera.metres(depth(u, v));
-            if (!is_valid_depth(depth(u, v)) || z < camera.depth_min_m || z > camera.depth_max_m) continue;
-            const Eigen::Vector3d p_world = world_from_depth * camera.depth.unproject(u, v, z);
-            for (Entry& entry : entries_) {
-                if (std::abs(entry.plane.signed_distance(p_world)) > kReach_m) continue;
-                const Eigen::Vector3d p = entry.plane_from_world * p_world;
-                const Eigen::Array2d xy = p.head<2>().array();
-                if ((xy < entry.low.array()).any() || (xy > entry.high.array()).any()) continue;
-                if (contains(entry.outline, p.head<2>())) entry.moments.add(p);
-            }
+    benchmark::for_each_reading(depth, camera, [&](int u, int v, double z) {
+        const Eigen::Vector3d p_world = world_from_depth * camera.depth.unproject(u, v, z);
+        for (Entry& entry : entries_) {
+            if (std::abs(entry.plane.signed_distance(p_world)) > kReach_m) continue;
+            const Eigen::Vector3d p = entry.plane_from_world * p_world;
+            const Eigen::Array2d xy = p.head<2>().array();
+            if ((xy < entry.low.array()).any() || (xy > entry.high.array()).any()) continue;
+            if (contains(entry.outline, p.head<2>())) entry.moments.add(p);
         }
-    }
+    });
 }
 
 std::vector<SurfaceCheck> SurfaceChecker::checks() const {
@@ -64,7 +60,7 @@ std::vector<SurfaceCheck> SurfaceChecker::checks() const {
         if (!fit.valid) continue;
         // The box's middle is the origin of the plane's frame.
         checks.push_back({entry.id, entry.area, entry.moments.count,
-                          angle_between(fit.plane.normal, Eigen::Vector3d::UnitZ()) * 180 / std::numbers::pi,
+                          degrees(angle_between(fit.plane.normal, Eigen::Vector3d::UnitZ())),
                           std::abs(fit.plane.d)});
     }
     return checks;
@@ -85,7 +81,7 @@ std::vector<SurfaceCheck> check_surfaces(const std::string& input_name, std::int
         if (pose) checker.add(frame->depth(), frame->camera(), *pose);
     });
     const std::unique_ptr<Input> input = open_input(input_name, bus, camera);
-    while ((frames == 0 || input->frames() < frames) && input->feed()) bus.drain();
+    feed_all(*input, frames, [&](std::int64_t) { bus.drain(); });
     return checker.checks();
 }
 

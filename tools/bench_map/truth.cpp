@@ -4,18 +4,19 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <opencv2/imgproc.hpp>
 
+#include "core/angle.hpp"
 #include "core/box.hpp"
+#include "simulator/simulated_source.hpp"
 
 namespace planemap::bench_map {
 
 namespace {
 
-constexpr double kRadians = std::numbers::pi / 180;
-constexpr double kSameAngle = 0.1 * kRadians, kSameDistance_m = 0.001;
-constexpr double kGap_m = 0.5;  // between parts of one plane
+constexpr double kSameAngle = radians(0.1), kSameDistance_m = 0.001;
+constexpr std::int64_t kEvery = 5;  // frames
+constexpr double kGap_m = 0.5;      // between parts of one plane
 
 bool same_plane(const Plane& a, const Plane& b, const Eigen::Vector3d& p) {
     return angle_between(a.normal, b.normal) <= kSameAngle &&
@@ -71,11 +72,6 @@ cv::Mat1i parts_of(const PlaneRaster& raster) {
 
 }  // namespace
 
-Eigen::Vector3d TruePlane::centre() const {
-    const Eigen::Vector2d c = visible.centre();
-    return world_from_plane * Eigen::Vector3d(c.x(), c.y(), 0);
-}
-
 TruthCollector::TruthCollector(const simulator::World& world) {
     for (const simulator::Surface& surface : world.surfaces) surface_names_.push_back(surface.name);
     std::vector<std::vector<Eigen::Vector3d>> corners;  // of each group
@@ -104,27 +100,27 @@ TruthCollector::TruthCollector(const simulator::World& world) {
             const Eigen::Vector2d p = on_plane(group.world_from_plane, corner);
             low = low.cwiseMin(p), high = high.cwiseMax(p);
         }
-        group.visible = PlaneRaster(low, high, 0);
+        group.visible = PlaneRaster(low, high);
         group.material = group.visible;
         group.surfaces.assign(group.visible.mask.cells.size(), -1);
         for (std::size_t k = 0; k < corners[i].size(); k += 4) {
             Outline outline{{Ring()}};
             for (std::size_t c = 0; c < 4; ++c)
                 outline.rings[0].push_back(on_plane(group.world_from_plane, corners[i][k + c]));
-            for_each_cell(rasterised(outline), [&](int x, int y) {
+            for_each_cell(evaluation::rasterised(outline), [&](int x, int y) {
                 group.material.mask.set(x - group.material.x0, y - group.material.y0);
             });
         }
     }
 }
 
-void TruthCollector::add(const simulator::View& view, const Sight& sight) {
+void TruthCollector::add(const simulator::View& view, const map::Sight& sight) {
     for (std::size_t i = 0; i < groups_.size(); ++i)
         look(groups_[i], static_cast<std::int16_t>(i), view, sight);
 }
 
 void TruthCollector::look(Group& group, std::int16_t index, const simulator::View& view,
-                          const Sight& sight) const {
+                          const map::Sight& sight) const {
     const simulator::View& v = view;
     const Pose camera_from_plane = view.world_from_camera.inverse(Eigen::Isometry) * group.world_from_plane;
     const Eigen::Vector3d eye = camera_from_plane.inverse(Eigen::Isometry).translation();  // on the plane
@@ -132,7 +128,7 @@ void TruthCollector::look(Group& group, std::int16_t index, const simulator::Vie
     const double highest = std::max(v.camera.cy, v.camera.height - 1 - v.camera.cy) / v.camera.fy;
     const double reach = sight.max_m * std::hypot(1, widest, highest);
     if (eye.z() <= 0 || eye.z() >= reach) return;
-    const double min_cosine = std::cos(sight.max_angle_deg * kRadians);
+    const double min_cosine = std::cos(radians(sight.max_angle_deg));
     const double around = std::sqrt(reach * reach - eye.z() * eye.z());
     const auto first = [](double p, int from) {
         return std::max(0, static_cast<int>(std::floor(p / PlaneRaster::kCell_m)) - from);
@@ -149,7 +145,7 @@ void TruthCollector::look(Group& group, std::int16_t index, const simulator::Vie
         for (int x = left; x <= right; ++x) {
             const std::size_t cell = visible.mask.index(x, y);
             if (group.material.mask.cells[cell] == 0 || visible.mask.cells[cell] != 0) continue;
-            const Eigen::Vector2d middle = cell_centre(x + visible.x0, y + visible.y0);
+            const Eigen::Vector2d middle = visible.cell_centre(x + visible.x0, y + visible.y0);
             const Eigen::Vector3d p_plane(middle.x(), middle.y(), 0);
             const Eigen::Vector3d p = camera_from_plane * p_plane;
             if (p.z() < sight.min_m || p.z() > sight.max_m) continue;
@@ -197,6 +193,21 @@ std::vector<TruePlane> TruthCollector::planes() const {
                          [](const auto& a, const auto& b) { return a.visible.count() > b.visible.count(); });
     }
     return planes;
+}
+
+std::optional<std::vector<TruePlane>> true_planes(const std::string& input, std::int64_t frames) {
+    if (!input.starts_with("sim:")) return std::nullopt;
+    const simulator::SimulatedSource source(simulator::parse_simulator_name(input));
+    map::Sight sight;
+    sight.min_m = source.camera().depth_min_m;
+    sight.max_m = source.camera().depth_max_m;
+    sight.max_angle_deg = simulator::DepthSensorOptions().grazing_from_deg;
+    const auto all = static_cast<std::int64_t>(*source.size());
+    const std::int64_t count = frames > 0 ? std::min(frames, all) : all;
+    TruthCollector truth(source.world());
+    for (std::int64_t i = 0; i < count; i += kEvery)
+        truth.add(source.depth_view(static_cast<std::size_t>(i)), sight);
+    return truth.planes();
 }
 
 }  // namespace planemap::bench_map

@@ -2,28 +2,20 @@
 // The planes that a map of a simulated world should hold.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "bench_map/plane_raster.hpp"
-#include "core/plane.hpp"
+#include "evaluate/plane_judge.hpp"
 #include "simulator/renderer.hpp"
 
 namespace planemap::bench_map {
 
-/// A plane as far as the camera has seen it.
-struct TruePlane {
-    std::string name;  ///< of the surface that most of it is; "+2" counts others in the same plane
-    Plane plane;       ///< world frame; the normal points to the side that can be seen
-    Pose world_from_plane = Pose::Identity();  ///< z is the normal; frame of the raster
-    PlaneRaster visible;                       ///< at least one cell
-
-    /// Middle of the visible surface, world frame.
-    Eigen::Vector3d centre() const;
-};
+using evaluation::PlaneRaster;
+using evaluation::TruePlane;
 
 /// What of a view counts as seen.
-struct Sight {
+struct map::Sight {
     double min_m = 0.5, max_m = 4.0;  ///< depth along the optical axis
     double max_angle_deg = 76;        ///< between ray and normal
 };
@@ -39,7 +31,7 @@ class TruthCollector {
 
     /// Adds what one exact view shows. Each cell of a plane is looked up in the view, so that no pixel is too
     /// small or too large for the raster.
-    void add(const simulator::View& view, const Sight& sight);
+    void add(const simulator::View& view, const map::Sight& sight);
 
     /// The planes seen so far, by plane and then from the largest part to the smallest.
     std::vector<TruePlane> planes() const;
@@ -52,11 +44,15 @@ class TruthCollector {
         std::vector<std::int16_t> surfaces;  ///< of each visible cell
     };
 
-    void look(Group& group, std::int16_t index, const simulator::View& view, const Sight& sight) const;
+    void look(Group& group, std::int16_t index, const simulator::View& view, const map::Sight& sight) const;
 
     std::vector<std::string> surface_names_;
     std::vector<std::int16_t> surface_of_rectangle_, group_of_rectangle_;
     std::vector<Group> groups_;
 };
+
+/// The planes that a simulated sequence shows in every fifth of its first `frames` frames (0: all) within the
+/// sensor's range; nothing for other inputs.
+std::optional<std::vector<TruePlane>> true_planes(const std::string& input, std::int64_t frames);
 
 }  // namespace planemap::bench_map

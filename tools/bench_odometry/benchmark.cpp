@@ -1,50 +1,50 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench_odometry/benchmark.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <chrono>
-#include <cstdio>
 #include <stdexcept>
 
-#include "bench_odometry/child.hpp"
-#include "core/validation.hpp"
+#include "benchmark/child.hpp"
+#include "benchmark/rendering.hpp"
 
 namespace planemap::bench_odometry {
 
 namespace {
 
-/// Frames so far, on stderr: redrawn on a terminal, else a line every ten seconds.
-class Counter {
-  public:
-    Counter(std::string what, bool quiet)
-        : what_(std::move(what)), quiet_(quiet), terminal_(::isatty(STDERR_FILENO) == 1) {}
-    Counter(const Counter&) = delete;
-    Counter& operator=(const Counter&) = delete;
-    ~Counter() {
-        if (terminal_ && !quiet_) std::fputs("\r\033[K", stderr);
-    }
-    void show(std::int64_t frames) {
-        if (quiet_) return;
-        const auto now = std::chrono::steady_clock::now();
-        if (std::chrono::duration<double>(now - last_).count() < (terminal_ ? 0.25 : 10)) return;
-        std::fprintf(stderr, "%s%s, frame %lld%s", terminal_ ? "\r\033[K" : "", what_.c_str(),
-                     static_cast<long long>(frames), terminal_ ? "" : "\n");
-        last_ = now;
-    }
-
-  private:
-    std::string what_;
-    bool quiet_, terminal_;
-    std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
+/// Colour blurred over 15 ms and up to 9 ms away from depth, as a Kinect's.
+constexpr const char* kHandHeld = "office?blur=4&jitter=0.009";
 
 }  // namespace
 
+const std::vector<SequenceInfo>& known_sequences() {
+    static const std::vector<SequenceInfo> kSequences = benchmark::with_recordings({
+        {"sim:kt0", "simulated office, a recorded hand-held trajectory of 6.5 m, Kinect noise, blur, jitter",
+         kHandHeld, "handheld_poses/kt0.txt", 0},
+        {"sim:kt1", "simulated office, the same, a trajectory of 2.1 m", kHandHeld, "handheld_poses/kt1.txt",
+         0},
+        {"sim:kt2", "simulated office, the same, a trajectory of 8.4 m", kHandHeld, "handheld_poses/kt2.txt",
+         0},
+        {"sim:kt3", "simulated office, the same, a trajectory of 11.3 m", kHandHeld, "handheld_poses/kt3.txt",
+         0},
+        {"sim:building", "simulated corridor around a block, 1.1 rounds of 100 m at walking speed",
+         "building?blur=4&jitter=0.009&speed=1.2&turn=60&frames=2850", "", 0},
+        {"sim:spin", "simulated office, fast rotations with blur",
+         "office?blur=8&jitter=0.009&speed=1&turn=180&frames=600", "", 0},
+        {"sim:wall", "simulated: along a wall, 6 m of it bare", "wall?blur=4&jitter=0.009&frames=1300", "",
+         0},
+        {"sim:clutter", "simulated: small boxes any way up, no plane",
+         "clutter?blur=4&jitter=0.009&frames=600", "", 0},
+        {"sim:dark", "simulated office without light: depth alone", "office?light=0&jitter=0.009&frames=870",
+         "", 0},
+        {"sim:twins", "simulated: two rooms that nothing tells apart, and a corridor",
+         "twins?blur=4&jitter=0.009&speed=0.8&turn=70&frames=2100", "", 0},
+    });
+    return kSequences;
+}
+
 void BenchmarkOptions::validate() const {
     FieldErrors errors("benchmark options");
-    errors.require(frames >= 0, "frames", frames, "at least 0");
+    check(errors);
     errors.require(slow_frames >= 0, "slow-frames", slow_frames, "at least 0");
     errors.throw_if_any();
 }
@@ -53,11 +53,18 @@ Benchmark::Benchmark(const BenchmarkOptions& options) : options_(options) {
     options_.validate();
 }
 
-std::optional<Sequence> Benchmark::open(const SequenceInfo& info, std::string& missing) const {
-    Counter counter(info.name + ", rendering", options_.quiet);
-    return open_sequence(
-        info, {options_.data, options_.cache, options_.frames},
-        [&](std::int64_t frames) { counter.show(frames); }, missing);
+Sequence Benchmark::open(const SequenceInfo& info) const {
+    if (!info.simulator.empty()) {
+        std::filesystem::path truth_file =
+            benchmark::rendered_log(info, options_.data, options_.cache, options_.frames,
+                                    benchmark::frame_counter(info.name + ", rendering", options_.quiet));
+        const std::string log = truth_file.string();
+        return {info.name, log, read_trajectory(truth_file.replace_extension(".txt"))};
+    }
+    Sequence sequence{info.name, benchmark::input_of(info, options_.data), std::nullopt};
+    const std::filesystem::path truth_file = std::filesystem::path(sequence.input) / "groundtruth.txt";
+    if (std::filesystem::is_regular_file(truth_file)) sequence.truth = read_trajectory(truth_file);
+    return sequence;
 }
 
 Row Benchmark::run(const Sequence& sequence, const MethodInfo& method) const {
@@ -65,10 +72,10 @@ Row Benchmark::run(const Sequence& sequence, const MethodInfo& method) const {
     if (method.slow && options_.slow_frames > 0)
         frames = frames > 0 ? std::min<std::int64_t>(frames, options_.slow_frames) : options_.slow_frames;
     try {
-        const ChildResult result = run_in_child([&] {
-            Counter counter(sequence.name + ", " + method.name, options_.quiet);
-            return to_json(run_method(method.name, sequence.input, frames, options_.pipeline,
-                                      [&](std::int64_t count) { counter.show(count); }));
+        const benchmark::ChildResult result = benchmark::run_in_child([&] {
+            return to_json(
+                run_method(method.name, sequence.input, frames, options_.pipeline,
+                           benchmark::frame_counter(sequence.name + ", " + method.name, options_.quiet)));
         });
         Row row = make_row(sequence.name, method.name, sequence.truth, run_from_json(result.value));
         row.cpu_s = result.cpu_s;

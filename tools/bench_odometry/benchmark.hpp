@@ -7,16 +7,26 @@
 
 #include "bench_odometry/methods.hpp"
 #include "bench_odometry/row.hpp"
-#include "bench_odometry/sequences.hpp"
+#include "benchmark/program.hpp"
 
 namespace planemap::bench_odometry {
 
-struct BenchmarkOptions {
-    int frames = 0;                     ///< from each sequence's start; 0: all
-    int slow_frames = 300;              ///< at most this many for a method that is slow; 0: as the others
-    std::filesystem::path data, cache;  ///< see SequenceOptions
-    PipelineOptions pipeline;           ///< of the project's own methods
-    bool quiet = false;                 ///< no progress on stderr
+using benchmark::SequenceInfo;
+
+/// Recordings and simulated walks.
+const std::vector<SequenceInfo>& known_sequences();
+
+/// A sequence that is there to be run.
+struct Sequence {
+    std::string name;
+    std::string input;                ///< folder or log, as planemap-run takes it
+    std::optional<Trajectory> truth;  ///< of the colour camera; nothing if it is not known
+};
+
+struct BenchmarkOptions : benchmark::Options {
+    int slow_frames = 300;        ///< at most this many for a method that is slow; 0: as the others
+    std::filesystem::path cache;  ///< folder of the logs of simulated sequences; made if it is not there
+    PipelineOptions pipeline;     ///< of the project's own methods
 
     /// Throws std::invalid_argument that names every bad field.
     void validate() const;
@@ -27,8 +37,9 @@ class Benchmark {
     /// Throws std::invalid_argument for bad options.
     explicit Benchmark(const BenchmarkOptions& options);
 
-    /// Opens a sequence; nothing, and why in `missing`, if its data is not there.
-    std::optional<Sequence> open(const SequenceInfo& info, std::string& missing) const;
+    /// Finds a recording, or renders a simulated sequence, see rendered_log(). Throws DataMissing, or
+    /// std::runtime_error naming what went wrong.
+    Sequence open(const SequenceInfo& info) const;
     /// Runs one method on one sequence. Throws std::runtime_error naming both if it failed.
     Row run(const Sequence& sequence, const MethodInfo& method) const;
 

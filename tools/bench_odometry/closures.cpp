@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench_odometry/closures.hpp"
 
-#include <numbers>
+#include "core/angle.hpp"
 
 namespace planemap::bench_odometry {
 
@@ -21,7 +21,7 @@ std::optional<ClosureError> judge(const Trajectory& truth, const Closure& closur
         tolerance.base_m + tolerance.share_of_distance * true_from_from_to.translation().norm();
     ClosureError error;
     error.metres = difference.translation().norm();
-    error.degrees = rotation_angle(difference) * 180 / std::numbers::pi;
+    error.degrees = degrees(rotation_angle(difference));
     error.is_false = !(error.metres <= allowed_m && error.degrees <= tolerance.angle_deg);
     return error;
 }

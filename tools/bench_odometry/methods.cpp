@@ -2,7 +2,6 @@
 #include "bench_odometry/methods.hpp"
 
 #include <algorithm>
-#include <stdexcept>
 
 #include "bench_odometry/peers.hpp"
 #include "benchmark/choices.hpp"
@@ -39,10 +38,10 @@ MethodRun run_planemap(const std::string& input_name, std::int64_t max_frames, c
     Bus bus("memq://");
     Pipeline pipeline(bus, options);
     const std::unique_ptr<Input> input = open_input(input_name, bus, options.camera);
-    while ((max_frames == 0 || input->frames() < max_frames) && input->feed()) {
+    feed_all(*input, max_frames, [&](std::int64_t frames) {
         pipeline.settle();
-        on_frame(input->frames());
-    }
+        on_frame(frames);
+    });
     pipeline.finish();
     MethodRun run;
     run.frames = input->frames();
@@ -73,7 +72,7 @@ const std::vector<MethodInfo>& known_methods() {
 }
 
 std::vector<MethodInfo> parse_methods(const std::string& list) {
-    return chosen("methods", list, known_methods());
+    return benchmark::chosen("methods", list, known_methods());
 }
 
 MethodRun run_method(const std::string& method, const std::string& input, std::int64_t max_frames,

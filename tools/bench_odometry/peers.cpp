@@ -6,6 +6,7 @@
 #include <opencv2/rgbd/depth.hpp>
 #include <optional>
 
+#include "benchmark/readings.hpp"
 #include "messages/channels.hpp"
 #include "messages/frame_decoder.hpp"
 #include "messages/module_status.hpp"
@@ -21,16 +22,9 @@ cv::Mat luma(const GrayImage& gray) {
 
 /// Metres; NaN where there is no reading to trust.
 cv::Mat metric(const DepthImage& depth, const CameraInfo& camera) {
-    cv::Mat metres(depth.height, depth.width, CV_32F);
-    for (int v = 0; v < depth.height; ++v) {
-        for (int u = 0; u < depth.width; ++u) {
-            const double z = camera.metres(depth(u, v));
-            const bool trusted =
-                is_valid_depth(depth(u, v)) && z >= camera.depth_min_m && z <= camera.depth_max_m;
-            metres.at<float>(v, u) =
-                trusted ? static_cast<float>(z) : std::numeric_limits<float>::quiet_NaN();
-        }
-    }
+    cv::Mat metres(depth.height, depth.width, CV_32F, std::numeric_limits<float>::quiet_NaN());
+    benchmark::for_each_reading(
+        depth, camera, [&](int u, int v, double z) { metres.at<float>(v, u) = static_cast<float>(z); });
     return metres;
 }
 
@@ -98,10 +92,10 @@ MethodRun run_peer(const std::string& method, const std::string& input_name, std
         if (pose) run.trajectory.push_back({frame->color_utime(), *pose});
     });
     const std::unique_ptr<Input> input = open_input(input_name, bus, std::nullopt);
-    while ((max_frames == 0 || input->frames() < max_frames) && input->feed()) {
+    feed_all(*input, max_frames, [&](std::int64_t frames) {
         bus.drain();
-        on_frame(input->frames());
-    }
+        on_frame(frames);
+    });
     run.frames = input->frames();
     run.tracking = stage_time(odometry.ms());
     run.decoding = stage_time(decoder.decode_ms());

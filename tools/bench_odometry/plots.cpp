@@ -6,10 +6,13 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <numbers>
+
+#include "benchmark/table.hpp"
+#include "core/angle.hpp"
 
 namespace planemap::bench_odometry {
 
+using benchmark::text;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
@@ -21,21 +24,13 @@ constexpr const char* kTruthColor = "#999999";
 constexpr std::array<const char*, 6> kColors{"#b3142a", "#e08214", "#2166ac",
                                              "#5aae61", "#762a83", "#01665e"};
 
-std::string format(const char* pattern, double value) {
-    char text[48];
-    std::snprintf(text, sizeof(text), pattern, value);
-    return text;
-}
-
-std::string text_at(double x, double y, const std::string& text, const char* color) {
-    return "<text x=\"" + format("%.1f", x) + "\" y=\"" + format("%.1f", y) + "\" fill=\"" + color + "\">" +
-           text + "</text>\n";
+std::string text_at(double x, double y, const std::string& words, const char* color) {
+    return text("<text x=\"%.1f\" y=\"%.1f\" fill=\"%s\">%s</text>\n", x, y, color, words.c_str());
 }
 
 std::string line_at(double x0, double y0, double x1, double y1, const char* color) {
-    return "<line x1=\"" + format("%.1f", x0) + "\" y1=\"" + format("%.1f", y0) + "\" x2=\"" +
-           format("%.1f", x1) + "\" y2=\"" + format("%.1f", y1) + "\" stroke=\"" + color +
-           "\" stroke-width=\"3\"/>\n";
+    return text("<line x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\" stroke=\"%s\" stroke-width=\"3\"/>\n",
+                x0, y0, x1, y1, color);
 }
 
 /// World points to the page, seen from above.
@@ -81,11 +76,12 @@ std::string polyline(const Trajectory& trajectory, const TopView& view, const ch
     for (const StampedPose& pose : trajectory) {
         const Vector2d p = view(pose);
         d += before == nullptr || pose.utime - before->utime > kBreak_us ? 'M' : 'L';
-        d += format("%.1f", p.x()) + "," + format("%.1f", p.y());
+        d += text("%.1f,%.1f", p.x(), p.y());
         before = &pose;
     }
-    return "<path d=\"" + d + "\" fill=\"none\" stroke=\"" + color + "\" stroke-width=\"" +
-           format("%.1f", width) + "\" stroke-linejoin=\"round\"/>\n";
+    return "<path d=\"" + d +
+           text("\" fill=\"none\" stroke=\"%s\" stroke-width=\"%.1f\" stroke-linejoin=\"round\"/>\n", color,
+                width);
 }
 
 /// 1, 2 or 5 times a power of ten metres: about a fifth of the page.
@@ -95,7 +91,7 @@ std::string scale_bar(double pixels_per_metre) {
     const double metres = power * (wanted / power >= 5 ? 5 : wanted / power >= 2 ? 2 : 1);
     constexpr double kY = kSize_px - 15;
     return line_at(kMargin_px, kY, kMargin_px + metres * pixels_per_metre, kY, "#000000") +
-           text_at(kMargin_px + metres * pixels_per_metre + 8, kY + 5, format("%g m", metres), "#000000");
+           text_at(kMargin_px + metres * pixels_per_metre + 8, kY + 5, text("%g m", metres), "#000000");
 }
 
 /// The truth from the first to the last moment that any of the others is of.
@@ -121,7 +117,7 @@ Vector3d up_direction(const Trajectory& trajectory) {
     if (up.norm() < 1e-9) return Vector3d::UnitZ();
     up.normalize();
     Eigen::Index axis = 0;
-    if (up.cwiseAbs().maxCoeff(&axis) < std::cos(35 * std::numbers::pi / 180)) return up;
+    if (up.cwiseAbs().maxCoeff(&axis) < std::cos(radians(35))) return up;
     return std::copysign(1.0, up[axis]) * Vector3d::Unit(axis);
 }
 
@@ -137,9 +133,10 @@ std::string plot_svg(const std::string& title, const Trajectory& whole_truth, co
     }
     const Trajectory truth = within(whole_truth, aligned);
     const TopView view(truth, aligned);
-    std::string svg = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" +
-                      format("%.0f", kSize_px + kLegend_px) + "\" height=\"" + format("%.0f", kSize_px) +
-                      "\" font-family=\"sans-serif\" font-size=\"15\">\n"
+    std::string svg = text(
+                          "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%.0f\" height=\"%.0f\" "
+                          "font-family=\"sans-serif\" font-size=\"15\">\n",
+                          kSize_px + kLegend_px, kSize_px) +
                       "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n" +
                       polyline(truth, view, kTruthColor, 5);
     std::string legend = text_at(kSize_px, kMargin_px, title + ", from above", "#000000") +
@@ -149,11 +146,10 @@ std::string plot_svg(const std::string& title, const Trajectory& whole_truth, co
         const char* color = kColors[i % kColors.size()];
         const double y = kMargin_px + 50 + 25 * static_cast<double>(i);
         svg += polyline(aligned[i], view, color, 1.5);
-        legend +=
-            line_at(kSize_px, y, kSize_px + 25, y, color) +
-            text_at(kSize_px + 32, y + 5,
-                    shown[i]->method + format(", %.1f cm", 100 * shown[i]->evaluation->ate->metres.rmse),
-                    "#000000");
+        legend += line_at(kSize_px, y, kSize_px + 25, y, color) +
+                  text_at(kSize_px + 32, y + 5,
+                          shown[i]->method + text(", %.1f cm", 100 * shown[i]->evaluation->ate->metres.rmse),
+                          "#000000");
     }
     return svg + legend + scale_bar(view.pixels_per_metre()) + "</svg>\n";
 }

@@ -4,9 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
-#include "bench_odometry/closures.hpp"
+#include "core/angle.hpp"
 
 namespace planemap::bench_odometry {
 
@@ -14,10 +13,6 @@ namespace {
 
 constexpr std::int64_t kCandidateStep_us = 100000;
 constexpr std::int64_t kMaxGap_us = 500000;  // of a trajectory that is interpolated
-
-double degrees(double radians) {
-    return radians * 180 / std::numbers::pi;
-}
 
 /// How far a pose is from a place: up to 1 is there.
 double offset_from(const Pose& place, const Pose& pose, double radius_m, double angle_deg) {

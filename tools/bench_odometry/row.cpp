@@ -2,79 +2,14 @@
 #include "bench_odometry/row.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <limits>
-#include <nlohmann/json.hpp>
 
 namespace planemap::bench_odometry {
 
 namespace {
 
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-
-/// The figures of a row that may be unknown: NaN.
-struct Figures {
-    double path_m = kUnknown, ate_m = kUnknown, scale = kUnknown;
-    double frame_m = kUnknown, frame_deg = kUnknown, second_m = kUnknown, second_deg = kUnknown;
-    double tracking_ms = kUnknown, tracking_p95_ms = kUnknown, segmentation_ms = kUnknown;
-    double loops_true = kUnknown, loops_false = kUnknown;
-};
-
-Figures figures_of(const Row& row) {
-    Figures f;
-    if (row.evaluation) {
-        const Evaluation& e = *row.evaluation;
-        f.path_m = e.path_length_m;
-        f.loops_true = f.loops_false = 0;
-        for (const auto& loop : row.loops)
-            if (loop) ++(loop->is_false ? f.loops_false : f.loops_true);
-        if (e.ate) {
-            f.ate_m = e.ate->metres.rmse;
-            f.scale = e.ate->scale;
-        }
-        if (e.rpe_frame) {
-            f.frame_m = e.rpe_frame->metres.rmse;
-            f.frame_deg = e.rpe_frame->degrees.rmse;
-        }
-        if (e.rpe_1s) {
-            f.second_m = e.rpe_1s->metres.rmse;
-            f.second_deg = e.rpe_1s->degrees.rmse;
-        }
-    }
-    if (row.run.tracking.count > 0) {
-        f.tracking_ms = row.run.tracking.median_ms;
-        f.tracking_p95_ms = row.run.tracking.p95_ms;
-    }
-    if (row.run.segmentation.count > 0) f.segmentation_ms = row.run.segmentation.median_ms;
-    return f;
-}
-
-/// A number right-aligned in `width` characters; "-" if it is not known.
-std::string cell(double value, int width, int decimals) {
-    char text[32];
-    if (std::isfinite(value)) {
-        std::snprintf(text, sizeof(text), "%*.*f", width, decimals, value);
-    } else {
-        std::snprintf(text, sizeof(text), "%*s", width, "-");
-    }
-    return text;
-}
-
-/// JSON has no NaN.
-nlohmann::ordered_json number(double value) {
-    if (!std::isfinite(value)) return nullptr;
-    return value;
-}
-
-nlohmann::ordered_json count(double value) {
-    if (!std::isfinite(value)) return nullptr;
-    return std::lround(value);
-}
-
 /// Where to look: moments and errors of the false closures.
-nlohmann::ordered_json false_loops(const Row& row) {
-    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+Json false_loops(const Row& row) {
+    Json list = Json::array();
     for (std::size_t i = 0; i < row.loops.size(); ++i) {
         if (!row.loops[i] || !row.loops[i]->is_false) continue;
         list.push_back({{"from_utime", row.run.closures[i].from_utime},
@@ -83,6 +18,21 @@ nlohmann::ordered_json false_loops(const Row& row) {
                         {"error_deg", row.loops[i]->degrees}});
     }
     return list;
+}
+
+/// Closures that are true or false; null without truth.
+Json loops(const Row& row, bool is_false) {
+    if (!row.evaluation) return nullptr;
+    return std::count_if(row.loops.begin(), row.loops.end(),
+                         [&](const auto& loop) { return loop && loop->is_false == is_false; });
+}
+
+Json times_known(const StageTime& stage, double ms) {
+    return stage.count > 0 ? Json(ms) : Json(nullptr);
+}
+
+double too_large_percent(double scale) {
+    return 100 * (scale - 1);
 }
 
 }  // namespace
@@ -99,41 +49,57 @@ Row make_row(const std::string& sequence, const std::string& method, const std::
     return row;
 }
 
-std::string table_heading() {
-    return "method            frames lost |   ATE m | frame mm    deg |   1 s mm    deg | scale % |     ms   "
-           " p95 "
-           "  seg ms  graph s |   CPU s  RSS MB |   kf true false\n";
+const benchmark::Table& table() {
+    using benchmark::kBar;
+    using benchmark::milli;
+    static const benchmark::Table kTable{{"method", "method", -17},
+                                         {"frames", "frames", 6},
+                                         {"lost", "lost", 4},
+                                         kBar,
+                                         {"ATE m", "ate_m", 7, 4},
+                                         kBar,
+                                         {"frame mm", "rpe_frame_m", 8, 2, milli},
+                                         {"deg", "rpe_frame_deg", 6, 3},
+                                         kBar,
+                                         {"1 s mm", "rpe_1s_m", 8, 1, milli},
+                                         {"deg", "rpe_1s_deg", 6, 3},
+                                         kBar,
+                                         {"scale %", "scale", 7, 2, too_large_percent},
+                                         kBar,
+                                         {"ms", "median_ms", 6, 2},
+                                         {"p95", "p95_ms", 6, 2},
+                                         {"seg ms", "segmentation_ms", 8, 2},
+                                         {"graph s", "graph_cpu_s", 8, 2},
+                                         kBar,
+                                         {"CPU s", "cpu_s", 7, 1},
+                                         {"RSS MB", "peak_rss_mb", 7, 0},
+                                         kBar,
+                                         {"kf", "keyframes", 4},
+                                         {"true", "loops_true", 4},
+                                         {"false", "loops_false", 5}};
+    return kTable;
 }
 
-std::string table_line(const Row& row) {
-    const Figures f = figures_of(row);
-    char start[64];
-    std::snprintf(start, sizeof(start), "%-17s %6lld %4lld", row.method.c_str(),
-                  static_cast<long long>(row.run.frames), static_cast<long long>(row.lost()));
-    return start + (" | " + cell(f.ate_m, 7, 4)) + " | " + cell(1e3 * f.frame_m, 8, 2) +
-           cell(f.frame_deg, 7, 3) + " | " + cell(1e3 * f.second_m, 8, 1) + cell(f.second_deg, 7, 3) + " | " +
-           cell(100 * (f.scale - 1), 7, 2) + " | " + cell(f.tracking_ms, 6, 2) +
-           cell(f.tracking_p95_ms, 7, 2) + cell(f.segmentation_ms, 9, 2) + cell(row.run.graph.total_s, 9, 2) +
-           " | " + cell(row.cpu_s, 7, 1) + cell(row.peak_rss_mb, 8, 0) + " | " +
-           cell(row.run.keyframes, 4, 0) + cell(f.loops_true, 5, 0) + cell(f.loops_false, 6, 0) + "\n";
-}
-
-nlohmann::ordered_json to_json(const Row& row) {
-    const Figures f = figures_of(row);
+Json to_json(const Row& row) {
+    using benchmark::known;
+    using benchmark::number;
+    const Evaluation e = row.evaluation.value_or(Evaluation());
+    const auto metres = [](const RelativeError& error) { return error.metres.rmse; };
+    const auto degrees = [](const RelativeError& error) { return error.degrees.rmse; };
     return {{"sequence", row.sequence},
             {"method", row.method},
             {"frames", row.run.frames},
-            {"path_m", number(f.path_m)},
-            {"ate_m", number(f.ate_m)},
-            {"rpe_frame_m", number(f.frame_m)},
-            {"rpe_frame_deg", number(f.frame_deg)},
-            {"rpe_1s_m", number(f.second_m)},
-            {"rpe_1s_deg", number(f.second_deg)},
-            {"scale", number(f.scale)},
+            {"path_m", known(row.evaluation, [](const Evaluation& all) { return all.path_length_m; })},
+            {"ate_m", known(e.ate, [](const AbsoluteError& error) { return error.metres.rmse; })},
+            {"rpe_frame_m", known(e.rpe_frame, metres)},
+            {"rpe_frame_deg", known(e.rpe_frame, degrees)},
+            {"rpe_1s_m", known(e.rpe_1s, metres)},
+            {"rpe_1s_deg", known(e.rpe_1s, degrees)},
+            {"scale", known(e.ate, [](const AbsoluteError& error) { return number(error.scale); })},
             {"lost", row.lost()},
-            {"median_ms", number(f.tracking_ms)},
-            {"p95_ms", number(f.tracking_p95_ms)},
-            {"segmentation_ms", number(f.segmentation_ms)},
+            {"median_ms", times_known(row.run.tracking, row.run.tracking.median_ms)},
+            {"p95_ms", times_known(row.run.tracking, row.run.tracking.p95_ms)},
+            {"segmentation_ms", times_known(row.run.segmentation, row.run.segmentation.median_ms)},
             {"odometry_cpu_s", row.run.tracking.total_s},
             {"segmentation_cpu_s", row.run.segmentation.total_s},
             {"graph_cpu_s", row.run.graph.total_s},
@@ -141,8 +107,8 @@ nlohmann::ordered_json to_json(const Row& row) {
             {"cpu_s", row.cpu_s},
             {"peak_rss_mb", row.peak_rss_mb},
             {"keyframes", row.run.keyframes},
-            {"loops_true", count(f.loops_true)},
-            {"loops_false", count(f.loops_false)},
+            {"loops_true", loops(row, false)},
+            {"loops_false", loops(row, true)},
             {"loops_unjudged",
              std::count_if(row.loops.begin(), row.loops.end(), [](const auto& l) { return !l; })},
             {"false_loops", false_loops(row)}};

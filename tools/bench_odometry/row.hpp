@@ -2,15 +2,17 @@
 // One row of the benchmark's table: a method on a sequence.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "bench_odometry/run.hpp"
+#include "benchmark/table.hpp"
 #include "evaluate/evaluation.hpp"
 
 namespace planemap::bench_odometry {
+
+using benchmark::Json;
 
 struct Row {
     std::string sequence, method;
@@ -27,11 +29,10 @@ struct Row {
 Row make_row(const std::string& sequence, const std::string& method, const std::optional<Trajectory>& truth,
              MethodRun run);
 
-/// The heading and the lines of a table with aligned columns; "-" for what the data does not allow.
-std::string table_heading();
-std::string table_line(const Row& row);
+/// What people see of a row's JSON.
+const benchmark::Table& table();
 
 /// A row as --json writes it; null for what the data does not allow.
-nlohmann::ordered_json to_json(const Row& row);
+Json to_json(const Row& row);
 
 }  // namespace planemap::bench_odometry

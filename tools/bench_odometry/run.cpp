@@ -3,70 +3,50 @@
 
 #include <nlohmann/json.hpp>
 
+namespace nlohmann {
+
+template <>
+struct adl_serializer<planemap::Pose> {
+    static void to_json(json& out, const planemap::Pose& pose) {
+        out = std::vector<double>(pose.data(), pose.data() + 16);
+    }
+    static void from_json(const json& in, planemap::Pose& pose) {
+        pose.matrix() = Eigen::Map<const Eigen::Matrix4d>(in.get<std::vector<double>>().data());
+    }
+};
+
+template <>
+struct adl_serializer<planemap::StampedPose> {
+    static void to_json(json& out, const planemap::StampedPose& pose) {
+        out = {pose.utime, json(pose.world_from_camera)};
+    }
+    static void from_json(const json& in, planemap::StampedPose& pose) {
+        in.at(0).get_to(pose.utime);
+        in.at(1).get_to(pose.world_from_camera);
+    }
+};
+
+}  // namespace nlohmann
+
 namespace planemap::bench_odometry {
 
-namespace {
-
-using Json = nlohmann::json;
-
-Json pose_to_json(const Pose& pose) {
-    Json json = Json::array();
-    for (int row = 0; row < 3; ++row)
-        for (int column = 0; column < 4; ++column) json.push_back(pose.matrix()(row, column));
-    return json;
-}
-
-Pose pose_from_json(const Json& json) {
-    Pose pose = Pose::Identity();
-    for (std::size_t i = 0; i < 12; ++i)
-        pose.matrix()(static_cast<int>(i / 4), static_cast<int>(i % 4)) = json.at(i).get<double>();
-    return pose;
-}
-
-Json stage_to_json(const StageTime& stage) {
-    return {stage.median_ms, stage.p95_ms, stage.total_s, stage.count};
-}
-
-StageTime stage_from_json(const Json& json) {
-    return {json.at(0), json.at(1), json.at(2), json.at(3)};
-}
-
-}  // namespace
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(StageTime, median_ms, p95_ms, total_s, count)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Closure, from_utime, to_utime, from_from_to)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(MethodRun, frames, trajectory, tracking, graph, segmentation, decoding,
+                                   keyframes, closures)
 
 StageTime stage_time(const Histogram& ms) {
     return {ms.median(), ms.p95(), ms.sum() / 1000, ms.count()};
 }
 
-Json to_json(const MethodRun& run) {
-    Json trajectory = Json::array(), closures = Json::array();
-    for (const StampedPose& pose : run.trajectory)
-        trajectory.push_back({pose.utime, pose_to_json(pose.world_from_camera)});
-    for (const Closure& c : run.closures)
-        closures.push_back({c.from_utime, c.to_utime, pose_to_json(c.from_from_to)});
-    return {{"frames", run.frames},
-            {"trajectory", trajectory},
-            {"tracking", stage_to_json(run.tracking)},
-            {"graph", stage_to_json(run.graph)},
-            {"segmentation", stage_to_json(run.segmentation)},
-            {"decoding", stage_to_json(run.decoding)},
-            {"keyframes", run.keyframes},
-            {"closures", closures}};
+nlohmann::json to_json(const MethodRun& run) {
+    nlohmann::json json;
+    to_json(json, run);
+    return json;
 }
 
-MethodRun run_from_json(const Json& json) {
-    MethodRun run;
-    run.frames = json.at("frames");
-    for (const Json& pose : json.at("trajectory"))
-        run.trajectory.push_back({pose.at(0).get<std::int64_t>(), pose_from_json(pose.at(1))});
-    run.tracking = stage_from_json(json.at("tracking"));
-    run.graph = stage_from_json(json.at("graph"));
-    run.segmentation = stage_from_json(json.at("segmentation"));
-    run.decoding = stage_from_json(json.at("decoding"));
-    run.keyframes = json.at("keyframes");
-    for (const Json& c : json.at("closures"))
-        run.closures.push_back(
-            {c.at(0).get<std::int64_t>(), c.at(1).get<std::int64_t>(), pose_from_json(c.at(2))});
-    return run;
+MethodRun run_from_json(const nlohmann::json& json) {
+    return json.get<MethodRun>();
 }
 
 }  // namespace planemap::bench_odometry

@@ -2,12 +2,11 @@
 // Prints the paper's Table 2.
 #pragma once
 
-#include <cstdio>
-#include <nlohmann/json_fwd.hpp>
 #include <vector>
 
 #include "bench_odometry/benchmark.hpp"
 #include "bench_odometry/revisits.hpp"
+#include "benchmark/report.hpp"
 
 namespace planemap::bench_odometry {
 
@@ -19,10 +18,7 @@ struct Table2Line {
 Table2Line summarised(const std::vector<RevisitErrors>& runs);
 
 /// Runs the methods through redkitchen, whose five places are found by its true poses, and through four
-/// simulated walks about five places of an office in random order, and prints a table each. Returns its lines
-/// for
-/// --json.
-nlohmann::ordered_json print_table2(const Benchmark& benchmark, const std::vector<MethodInfo>& methods,
-                                    std::FILE* out);
+/// simulated walks about five places of an office in random order, and reports a table each.
+void print_table2(const Benchmark& runner, const std::vector<MethodInfo>& methods, benchmark::Report& report);
 
 }  // namespace planemap::bench_odometry

@@ -3,15 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "bench_segmentation/metrics.hpp"
+#include "core/angle.hpp"
 
 namespace planemap::bench {
 
 namespace {
 
-constexpr double kMaxAngle = 10 * std::numbers::pi / 180, kMaxDistance_m = 0.1;
+constexpr double kMaxAngle = radians(10), kMaxDistance_m = 0.1;
 
 }  // namespace
 
@@ -47,7 +47,7 @@ Spread WorldPlanes::spread(const WorldPlane& plane) {
         sum += weight * distance;
         squares += weight * distance * distance;
     }
-    return {1, std::sqrt(angle) * 180 / std::numbers::pi, std::sqrt(std::max(0.0, squares - sum * sum))};
+    return {1, degrees(std::sqrt(angle)), std::sqrt(std::max(0.0, squares - sum * sum))};
 }
 
 Spread WorldPlanes::spread_of_largest(int count) const {

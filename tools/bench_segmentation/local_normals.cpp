@@ -71,17 +71,10 @@ void add_row(const Image<float>& inverse_depth, int row, double sign, std::vecto
 
 }  // namespace
 
-bool is_trusted(std::uint16_t raw, const CameraInfo& camera) {
-    const double z = camera.metres(raw);
-    return is_valid_depth(raw) && z >= camera.depth_min_m && z <= camera.depth_max_m;
-}
-
 Image<Eigen::Vector3f> local_normals(const DepthImage& depth, const CameraInfo& camera) {
     Image<float> inverse_depth(depth.width, depth.height);
-    for (std::size_t i = 0; i < depth.pixels.size(); ++i) {
-        if (is_trusted(depth.pixels[i], camera))
-            inverse_depth.pixels[i] = static_cast<float>(1 / camera.metres(depth.pixels[i]));
-    }
+    for_each_reading(depth, camera,
+                     [&](int u, int v, double z) { inverse_depth(u, v) = static_cast<float>(1 / z); });
     Image<Eigen::Vector3f> normals(depth.width, depth.height, Eigen::Vector3f::Zero());
     std::vector<Column> columns(static_cast<std::size_t>(depth.width));
     for (int v = 0; v < kReach; ++v) add_row(inverse_depth, v, 1, columns);

@@ -2,13 +2,12 @@
 // What a depth image itself says about surfaces, pixel by pixel, to judge planes by where there is no truth.
 #pragma once
 
-#include "core/camera.hpp"
-#include "core/image.hpp"
+#include "benchmark/readings.hpp"
 
 namespace planemap::bench {
 
-/// True for a reading that figures are counted over: valid, and within the sensor's trusted range.
-bool is_trusted(std::uint16_t raw, const CameraInfo& camera);
+using benchmark::for_each_reading;
+using benchmark::is_trusted;
 
 /// The unit normal of the surface around each pixel in the depth camera's frame, towards the sensor; zero
 /// where the surface is not locally planar. It is the least-squares plane in inverse depth of the trusted

@@ -2,26 +2,20 @@
 // planemap-bench-segmentation: methods that find planes in depth images, on the same frames.
 #include <pcl/pcl_config.h>
 
-#include <cstdio>
 #include <opencv2/core/version.hpp>
 
 #include "bench_segmentation/benchmark.hpp"
 #include "bench_segmentation/table1.hpp"
-#include "benchmark/build_info.hpp"
 #include "benchmark/choices.hpp"
-#include "benchmark/data_folder.hpp"
-#include "messages/process.hpp"
-#include "results/output_file.hpp"
+#include "benchmark/report.hpp"
 
 namespace planemap::bench {
 namespace {
 
 constexpr const char* kProgram = "planemap-bench-segmentation";
 
-struct Arguments {
-    std::string sequences, methods;
-    BenchmarkOptions benchmark;
-    std::filesystem::path json;
+struct Arguments : BenchmarkOptions {
+    std::string methods = benchmark::names_of(known_methods());
     bool table1 = false;
 };
 
@@ -33,9 +27,9 @@ std::string description() {
            "  planemap-bench-segmentation --sequences redkitchen --methods cells,ransac/4\n"
            "  planemap-bench-segmentation --table1                                the paper's Table 1\n"
            "  planemap-bench-segmentation --sequences sim:office --methods cells/1 --overlays out/overlays\n"
-           "Sequences:\n" +
-           described(known_sequences(), 20) + "Methods (NAME/N: at subsampling N only):\n" +
-           described(known_methods(), 20) +
+           "Sequences (and any sim:..., see planemap-simulate --help; seed=1..5 is five of them):\n" +
+           benchmark::described(known_sequences(), 20) + "Methods (NAME/N: at subsampling N only):\n" +
+           benchmark::described(known_methods(), 20) +
            "Columns:\n"
            "  ms, p95   median and 95th percentile over the frames of the thread's CPU time; the median of\n"
            "            three runs a frame, one run where it takes over 20 ms. Decimation is in it, "
@@ -60,69 +54,44 @@ std::string description() {
 }
 
 void add_flags(Flags& flags, Arguments& arguments) {
-    BenchmarkOptions& options = arguments.benchmark;
-    flags.add("sequences", arguments.sequences, "comma-separated names, see above");
+    benchmark::add_flags(flags, arguments,
+                         "frames a sequence, evenly spread; 0: each sequence's own, 3 to 100");
     flags.add("methods", arguments.methods, "comma-separated names, see above");
-    flags.add("frames", options.frames, "frames a sequence, evenly spread; 0: each sequence's own, 3 to 100");
-    flags.add("slow-frames", options.slow_frames, "at most this many frames for a method that is slow");
-    flags.add("data", options.data, "folder of the recordings; default: $PLANEMAP_DATA, or ../shared/data");
+    flags.add("slow-frames", arguments.slow_frames, "at most this many frames for a method that is slow");
     flags.add("table1", arguments.table1, "the paper's Table 1 instead: every method at 1.5, 2.5 and 3.5 m");
-    flags.add("json", arguments.json,
-              "write the rows to this file, or to - (standard output; tables then go to stderr)");
-    flags.add("overlays", options.overlays, "draw what was found: FOLDER/SEQUENCE/FRAME-METHOD.png");
-    flags.add("overlay-every", options.overlay_every, "a picture of every n-th frame that is run");
-    flags.add("q,quiet", options.quiet, "no progress on stderr");
-}
-
-nlohmann::ordered_json run_sequences(const Arguments& arguments, OutputFile& output) {
-    std::FILE* out = output.for_people();
-    const std::vector<SequenceInfo> sequences = parse_sequences(arguments.sequences);
-    const std::vector<MethodName> methods = parse_methods(arguments.methods);
-    nlohmann::ordered_json json = nlohmann::ordered_json::array();
-    Benchmark benchmark(arguments.benchmark);
-    for (const SequenceInfo& sequence : sequences) {
-        std::string missing;
-        const std::vector<Row> rows = benchmark.run(sequence, methods, missing);
-        if (!missing.empty()) {
-            std::fprintf(out, "\n%s: skipped. %s\n", sequence.name.c_str(), missing.c_str());
-            continue;
-        }
-        std::fprintf(out, "\n%s: %s\n%s", sequence.name.c_str(), sequence.what.c_str(),
-                     table_heading().c_str());
-        for (const Row& row : rows) {
-            std::fputs(table_line(row).c_str(), out);
-            json.push_back(to_json(row));
-        }
-        std::fflush(out);
-        output.keep(json.dump(1) + "\n");  // what was measured is kept if a later one fails
-    }
-    return json;
+    flags.add("overlays", arguments.overlays, "draw what was found: FOLDER/SEQUENCE/FRAME-METHOD.png");
+    flags.add("overlay-every", arguments.overlay_every, "a picture of every n-th frame that is run");
 }
 
 /// Table 1 has each method at 1, 2 and 4 unless --methods says otherwise.
-std::vector<MethodName> table1_methods(const std::string& list, bool is_default) {
-    if (!is_default) return parse_methods(list);
+std::vector<MethodName> table1_methods(const std::string& list) {
+    if (list != Arguments().methods) return parse_methods(list);
     std::vector<MethodName> methods;
-    for (const MethodInfo& info : known_methods()) {
+    for (const MethodInfo& info : known_methods())
         for (const int step : {1, 2, 4}) methods.push_back({info.name, step});
-    }
     return methods;
 }
 
 int run(const Arguments& arguments) {
-    OutputFile output(arguments.json);
-    const std::filesystem::path& overlays = arguments.benchmark.overlays;
-    if (!overlays.empty()) ResultFolder(overlays, {});  // an error now, not in two minutes
-    std::FILE* out = output.for_people();
-    const std::string peers = "PCL " PCL_VERSION_PRETTY
-                              " compiled with these flags (PCL_NO_PRECOMPILE); ransac-debian: Debian's build "
-                              "of it; OpenCV " CV_VERSION " as Debian builds it";
-    std::fputs(build_info(peers).c_str(), out);
-    const bool all_methods = arguments.methods == planemap::names_of(known_methods());
-    const nlohmann::ordered_json json =
-        arguments.table1 ? print_table1(table1_methods(arguments.methods, all_methods), out)
-                         : run_sequences(arguments, output);
-    output.finish(json.dump(1) + "\n");
+    const std::vector<SequenceInfo> sequences =
+        benchmark::parse_sequences(arguments.sequences, known_sequences());
+    const std::vector<MethodName> methods = parse_methods(arguments.methods);
+    const Benchmark runner(arguments);
+    if (!arguments.overlays.empty())
+        ResultFolder(arguments.overlays, {});  // an error now, not in two minutes
+    benchmark::Report report(arguments, "PCL " PCL_VERSION_PRETTY
+                                        " compiled with these flags (PCL_NO_PRECOMPILE); ransac-debian: "
+                                        "Debian's build of it; OpenCV " CV_VERSION " as Debian builds it");
+    if (arguments.table1) {
+        print_table1(table1_methods(arguments.methods), report);
+    } else {
+        report.for_each(sequences, [&](const SequenceInfo& sequence) {
+            const std::vector<Row> rows = runner.run(sequence, methods);
+            report.print("\n" + sequence.name + ": " + sequence.what + "\n" + table().heading());
+            for (const Row& row : rows) report.add(to_json(row), table());
+        });
+    }
+    report.finish();
     return 0;
 }
 
@@ -130,14 +99,10 @@ int run(const Arguments& arguments) {
 }  // namespace planemap::bench
 
 int main(int argc, char** argv) {
-    using namespace planemap::bench;
-    Arguments arguments;
-    arguments.sequences = planemap::names_of(known_sequences());
-    arguments.methods = planemap::names_of(known_methods());
-    arguments.benchmark.data = planemap::default_data_folder();
-    planemap::Flags flags(kProgram, description());
-    add_flags(flags, arguments);
-    const int parsed = flags.parse(argc, argv);
-    if (parsed >= 0) return parsed;
-    return planemap::run_main(kProgram, [&] { return run(arguments); });
+    using namespace planemap;
+    bench::Arguments arguments;
+    arguments.sequences = benchmark::names_of(bench::known_sequences());
+    return benchmark::run_program(
+        bench::kProgram, bench::description(), argc, argv,
+        [&](Flags& flags) { bench::add_flags(flags, arguments); }, [&] { return bench::run(arguments); });
 }

@@ -4,14 +4,13 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <sstream>
 #include <stdexcept>
 
 #include "bench_segmentation/local_normals.hpp"
 #include "bench_segmentation/metrics.hpp"
 #include "bench_segmentation/peers.hpp"
 #include "benchmark/choices.hpp"
-#include "segment/thread_time.hpp"
+#include "messages/module_status.hpp"
 #include "segmentation/cells.hpp"
 #include "segmentation/ransac.hpp"
 
@@ -72,15 +71,9 @@ std::unique_ptr<Finder> make_finder(const MethodName& method) {
 
 void append(const std::string& word, std::vector<MethodName>& methods) {
     const auto slash = word.find('/');
-    const std::string name = word.substr(0, slash);
-    const auto info = std::find_if(known_methods().begin(), known_methods().end(),
-                                   [&](const MethodInfo& known) { return known.name == name; });
-    if (info == known_methods().end()) {
-        throw std::invalid_argument("methods: there is no \"" + name + "\", only " +
-                                    names_of(known_methods(), ", "));
-    }
+    const MethodInfo& info = benchmark::named("methods", word.substr(0, slash), known_methods());
     if (slash == std::string::npos) {
-        for (const int step : info->subsamplings) methods.push_back({name, step});
+        for (const int step : info.subsamplings) methods.push_back({info.name, step});
         return;
     }
     int step = 0;
@@ -91,7 +84,7 @@ void append(const std::string& word, std::vector<MethodName>& methods) {
                                     "\" must be NAME/N with a subsampling N from 1 to " +
                                     std::to_string(kMaxSubsampling));
     }
-    methods.push_back({name, step});
+    methods.push_back({info.name, step});
 }
 
 }  // namespace
@@ -108,12 +101,15 @@ const std::vector<MethodInfo>& known_methods() {
     return methods;
 }
 
+bool is_slow(const MethodName& method) {
+    const std::vector<int>& slow =
+        benchmark::named("methods", method.name, known_methods()).slow_subsamplings;
+    return std::count(slow.begin(), slow.end(), method.subsampling) > 0;
+}
+
 std::vector<MethodName> parse_methods(const std::string& list) {
     std::vector<MethodName> methods;
-    std::istringstream words(list);
-    for (std::string word; std::getline(words, word, ',');) append(word, methods);
-    if (methods.empty())
-        throw std::invalid_argument("methods: none given; there are " + names_of(known_methods(), ", "));
+    benchmark::for_each_word("methods", list, [&](const std::string& word) { append(word, methods); });
     return methods;
 }
 
@@ -138,24 +134,23 @@ CameraInfo decimated(const CameraInfo& camera, int step) {
     };
     CameraInfo out = camera;
     out.depth = scaled(camera.depth);
-    if (camera.registered) out.color = scaled(camera.color);
+    out.color = scaled(camera.color);
     return out;
 }
 
 Image<std::uint16_t> spread(const Image<std::uint16_t>& labels, const std::vector<PlanarRegion>& regions,
                             const DepthImage& depth, const CameraInfo& camera, int step) {
     Image<std::uint16_t> out(depth.width, depth.height);
-    for (int v = 0; v < depth.height; ++v) {
-        const std::uint16_t* from = labels.row(std::min((v + step / 2) / step, labels.height - 1));
-        for (int u = 0; u < depth.width; ++u) {
-            const std::uint16_t label = from[std::min((u + step / 2) / step, labels.width - 1)];
-            if (label == 0 || !is_trusted(depth(u, v), camera)) continue;
-            const double z = camera.metres(depth(u, v));
-            const Plane& plane = regions[label - 1u].plane;
-            if (std::abs(plane.signed_distance(camera.depth.unproject(u, v, z))) <= tolerance(z))
-                out(u, v) = label;
-        }
-    }
+    for_each_reading(depth, camera, [&](int u, int v, double z) {
+        const auto nearest = [&](int pixel, int size) {
+            return std::min((pixel + step / 2) / step, size - 1);
+        };
+        const std::uint16_t label = labels(nearest(u, labels.width), nearest(v, labels.height));
+        if (label == 0) return;
+        const Plane& plane = regions[label - 1u].plane;
+        if (std::abs(plane.signed_distance(camera.depth.unproject(u, v, z))) <= tolerance(z))
+            out(u, v) = label;
+    });
     return out;
 }
 
@@ -163,13 +158,13 @@ Method::Method(const MethodName& name)
     : finder_(make_finder(name)), step_(is_ransac(name.name) ? 1 : name.subsampling) {}
 
 double Method::run(const DepthImage& depth, const CameraInfo& camera) {
-    const double start = thread_ms();
+    const double start = thread_cpu_ms();
     if (step_ == 1) {
         finder_->find(depth, camera);
     } else {
         finder_->find(decimated(depth, step_), decimated(camera, step_));
     }
-    return thread_ms() - start;
+    return thread_cpu_ms() - start;
 }
 
 const segmentation::Segmentation& Method::result(const DepthImage& depth, const CameraInfo& camera) {

@@ -38,12 +38,15 @@ struct MethodInfo {
 };
 const std::vector<MethodInfo>& known_methods();
 
+/// True for a method that is run on fewer frames.
+bool is_slow(const MethodName& method);
+
 /// Reads "cells,ransac/4": names, each with one subsampling from 1 to 16 or with the method's own. Throws
 /// std::invalid_argument that names what is wrong and lists what there is.
 std::vector<MethodName> parse_methods(const std::string& list);
 
-/// Every step-th pixel of every step-th row, and the camera that sees them. Only `depth` of the camera is
-/// scaled, and `color` with it where the sensor is registered. Precondition: step >= 1.
+/// Every step-th pixel of every step-th row, and the camera that sees them; its colour camera is scaled
+/// alike, so that depth can still be registered to it. Precondition: step >= 1.
 DepthImage decimated(const DepthImage& depth, int step);
 CameraInfo decimated(const CameraInfo& camera, int step);
 

@@ -65,14 +65,10 @@ class OrganisedFinder : public Finder {
         auto cloud = std::make_shared<pcl::PointCloud<Point>>(width, static_cast<std::uint32_t>(depth.height),
                                                               Point(kNone, kNone, kNone));
         cloud->is_dense = false;
-        for (int v = 0; v < depth.height; ++v) {
-            for (int u = 0; u < depth.width; ++u) {
-                if (!is_trusted(depth(u, v), camera)) continue;
-                const std::size_t i = static_cast<std::size_t>(v) * width + static_cast<std::size_t>(u);
-                (*cloud)[i].getVector3fMap() =
-                    camera.depth.unproject(u, v, camera.metres(depth(u, v))).cast<float>();
-            }
-        }
+        for_each_reading(depth, camera, [&](int u, int v, double z) {
+            const std::size_t i = static_cast<std::size_t>(v) * width + static_cast<std::size_t>(u);
+            (*cloud)[i].getVector3fMap() = camera.depth.unproject(u, v, z).cast<float>();
+        });
         return cloud;
     }
 

@@ -54,18 +54,13 @@ class RgbdPlaneFinder : public Finder {
 
   private:
     void make_points(const DepthImage& depth, const CameraInfo& camera) {
-        points_.create(depth.height, depth.width, CV_32FC3);
         constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
-        for (int v = 0; v < depth.height; ++v) {
-            for (int u = 0; u < depth.width; ++u) {
-                cv::Vec3f& point = points_.at<cv::Vec3f>(v, u);
-                point = {kNone, kNone, kNone};
-                if (!is_trusted(depth(u, v), camera)) continue;
-                const Eigen::Vector3f p =
-                    camera.depth.unproject(u, v, camera.metres(depth(u, v))).cast<float>();
-                point = {p.x(), p.y(), p.z()};
-            }
-        }
+        points_.create(depth.height, depth.width, CV_32FC3);
+        points_.setTo(cv::Scalar::all(kNone));
+        for_each_reading(depth, camera, [&](int u, int v, double z) {
+            const Eigen::Vector3f p = camera.depth.unproject(u, v, z).cast<float>();
+            points_.at<cv::Vec3f>(v, u) = {p.x(), p.y(), p.z()};
+        });
     }
 
     cv::rgbd::RgbdPlane planes_;

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <nlohmann/json.hpp>
 
 #include "bench_segmentation/local_normals.hpp"
 
@@ -23,14 +21,12 @@ double least_pixels(const DepthImage& depth) {
 void add_sightings(const DepthImage& depth, const CameraInfo& camera, const Pose& world_from_depth,
                    const segmentation::Segmentation& segmentation, WorldPlanes& world_planes) {
     std::vector<Sighting> sightings(segmentation.regions.size());
-    for (int v = 0; v < depth.height; ++v) {
-        for (int u = 0; u < depth.width; ++u) {
-            const std::uint16_t label = segmentation.labels(u, v);
-            if (label == 0 || !is_trusted(depth(u, v), camera)) continue;
-            sightings[label - 1u].centroid += camera.depth.unproject(u, v, camera.metres(depth(u, v)));
-            sightings[label - 1u].pixels += 1;
-        }
-    }
+    for_each_reading(depth, camera, [&](int u, int v, double z) {
+        const std::uint16_t label = segmentation.labels(u, v);
+        if (label == 0) return;
+        sightings[label - 1u].centroid += camera.depth.unproject(u, v, z);
+        sightings[label - 1u].pixels += 1;
+    });
     for (std::size_t i = 0; i < sightings.size(); ++i) {
         Sighting& sighting = sightings[i];
         if (sighting.pixels < least_pixels(depth)) continue;
@@ -41,20 +37,8 @@ void add_sightings(const DepthImage& depth, const CameraInfo& camera, const Pose
     }
 }
 
-std::string format(const char* pattern, double value, bool known = true) {
-    char text[32];
-    if (!known || !std::isfinite(value)) {
-        std::snprintf(text, sizeof(text), pattern, 0.0);
-        return std::string(std::string(text).size() - 1, ' ') + "-";
-    }
-    std::snprintf(text, sizeof(text), pattern, value);
-    return text;
-}
-
-/// JSON has no NaN.
-nlohmann::ordered_json number(double value, bool known = true) {
-    if (!known || !std::isfinite(value)) return nullptr;
-    return value;
+Json known_if(bool is_known, double value) {
+    return is_known ? benchmark::number(value) : Json(nullptr);
 }
 
 }  // namespace
@@ -73,65 +57,68 @@ void Row::add(std::optional<double> frame_ms, const BenchFrame& frame, const Cam
     }
 }
 
-std::string table_heading() {
-    return "method              sub frames       ms      p95  planes  expl%   coh%  off30%  rms mm |"
-           "  rec%  prec%  corr  over under  miss noise    deg     mm | spread deg    mm\n";
+const benchmark::Table& table() {
+    using benchmark::kBar;
+    using benchmark::milli;
+    using benchmark::percent;
+    static const benchmark::Table kTable{{"method", "method", -19},
+                                         {"sub", "subsampling", 3},
+                                         {"frames", "frames", 6},
+                                         {"ms", "median_ms", 8, 3},
+                                         {"p95", "p95_ms", 8, 3},
+                                         {"planes", "planes", 7, 1},
+                                         {"expl%", "explained", 6, 1, percent},
+                                         {"coh%", "coherent", 6, 1, percent},
+                                         {"off30%", "off30", 7, 2, percent},
+                                         {"rms mm", "rms_m", 7, 2, milli},
+                                         kBar,
+                                         {"rec%", "recall", 5, 1, percent},
+                                         {"prec%", "precision", 6, 1, percent},
+                                         {"corr", "correct", 5},
+                                         {"over", "over_segmented", 5},
+                                         {"under", "under_segmented", 5},
+                                         {"miss", "missed", 5},
+                                         {"noise", "noise", 5},
+                                         {"deg", "angle_median_deg", 6, 3},
+                                         {"mm", "distance_median_m", 6, 2, milli},
+                                         kBar,
+                                         {"spread deg", "spread_angle_deg", 10, 3},
+                                         {"mm", "spread_distance_m", 5, 1, milli}};
+    return kTable;
 }
 
-std::string table_line(const Row& row) {
-    char name[64];
-    std::snprintf(name, sizeof(name), "%-19s %3d %6.0f", row.method.name.c_str(), row.method.subsampling,
-                  row.score.frames);
+Json to_json(const Row& row) {
     const FrameScore& s = row.score;
     const MatchScore& m = row.match;
     const bool truth = row.has_truth;
     const Spread spread = row.world_planes.spread_of_largest(kLargestPlanes);
     const bool poses = row.has_poses && spread.planes > 0;
-    return name + format(" %8.3f", median(row.ms)) + format(" %8.3f", percentile_95(row.ms)) +
-           format(" %7.1f", s.planes_a_frame()) + format(" %6.1f", 100 * s.explained()) +
-           format(" %6.1f", 100 * s.coherent()) + format(" %7.2f", 100 * s.off30()) +
-           format(" %7.2f", 1e3 * s.rms()) + " |" +
-           format(" %5.1f", 100 * m.recall(), truth && m.true_pieces > 0) +
-           format(" %6.1f", 100 * m.precision(), truth && m.found > 0) + format(" %5.0f", m.correct, truth) +
-           format(" %5.0f", m.over_segmented, truth) + format(" %5.0f", m.under_segmented, truth) +
-           format(" %5.0f", m.missed, truth) + format(" %5.0f", m.noise, truth) +
-           format(" %6.3f", median(m.angle_deg), truth) +
-           format(" %6.2f", 1e3 * median(m.distance_m), truth) + " |" +
-           format(" %10.3f", spread.angle_deg, poses) + format(" %5.1f", 1e3 * spread.distance_m, poses) +
-           "\n";
-}
-
-nlohmann::ordered_json to_json(const Row& row) {
-    const FrameScore& s = row.score;
-    const MatchScore& m = row.match;
-    const bool truth = row.has_truth;
-    const Spread spread = row.world_planes.spread_of_largest(kLargestPlanes);
-    const bool poses = row.has_poses && spread.planes > 0;
-    return {{"sequence", row.sequence},
-            {"method", row.method.name},
-            {"subsampling", row.method.subsampling},
-            {"frames", static_cast<int>(s.frames)},
-            {"median_ms", number(median(row.ms))},
-            {"p95_ms", number(percentile_95(row.ms))},
-            {"max_ms", number(row.ms.empty() ? NAN : *std::max_element(row.ms.begin(), row.ms.end()))},
-            {"planes", s.planes_a_frame()},
-            {"explained", s.explained()},
-            {"coherent", s.coherent()},
-            {"off30", s.off30()},
-            {"rms_m", s.rms()},
-            {"recall", number(m.recall(), truth && m.true_pieces > 0)},
-            {"precision", number(m.precision(), truth && m.found > 0)},
-            {"angle_median_deg", number(median(m.angle_deg), truth)},
-            {"distance_median_m", number(median(m.distance_m), truth)},
-            {"true_regions", number(m.true_pieces, truth)},
-            {"correct", number(m.correct, truth)},
-            {"over_segmented", number(m.over_segmented, truth)},
-            {"under_segmented", number(m.under_segmented, truth)},
-            {"missed", number(m.missed, truth)},
-            {"noise", number(m.noise, truth)},
-            {"spread_planes", number(spread.planes, poses)},
-            {"spread_angle_deg", number(spread.angle_deg, poses)},
-            {"spread_distance_m", number(spread.distance_m, poses)}};
+    return {
+        {"sequence", row.sequence},
+        {"method", row.method.name},
+        {"subsampling", row.method.subsampling},
+        {"frames", static_cast<int>(s.frames)},
+        {"median_ms", benchmark::number(median(row.ms))},
+        {"p95_ms", benchmark::number(percentile_95(row.ms))},
+        {"max_ms", benchmark::number(row.ms.empty() ? NAN : *std::max_element(row.ms.begin(), row.ms.end()))},
+        {"planes", s.planes_a_frame()},
+        {"explained", s.explained()},
+        {"coherent", s.coherent()},
+        {"off30", s.off30()},
+        {"rms_m", s.rms()},
+        {"recall", known_if(truth && m.true_pieces > 0, m.recall())},
+        {"precision", known_if(truth && m.found > 0, m.precision())},
+        {"angle_median_deg", known_if(truth, median(m.angle_deg))},
+        {"distance_median_m", known_if(truth, median(m.distance_m))},
+        {"true_regions", known_if(truth, m.true_pieces)},
+        {"correct", known_if(truth, m.correct)},
+        {"over_segmented", known_if(truth, m.over_segmented)},
+        {"under_segmented", known_if(truth, m.under_segmented)},
+        {"missed", known_if(truth, m.missed)},
+        {"noise", known_if(truth, m.noise)},
+        {"spread_planes", known_if(poses, spread.planes)},
+        {"spread_angle_deg", known_if(poses, spread.angle_deg)},
+        {"spread_distance_m", known_if(poses, spread.distance_m)}};
 }
 
 }  // namespace planemap::bench

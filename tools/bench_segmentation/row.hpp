@@ -2,7 +2,6 @@
 // One row of the benchmark's table: a method on a sequence.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -10,8 +9,11 @@
 #include "bench_segmentation/methods.hpp"
 #include "bench_segmentation/metrics.hpp"
 #include "bench_segmentation/sequences.hpp"
+#include "benchmark/table.hpp"
 
 namespace planemap::bench {
+
+using benchmark::Json;
 
 /// What a method did on a sequence so far.
 struct Row {
@@ -28,11 +30,10 @@ struct Row {
              const Image<Eigen::Vector3f>& normals, const segmentation::Segmentation& segmentation);
 };
 
-/// The heading and the lines of a table with aligned columns; "-" where a sequence has no truth or no poses.
-std::string table_heading();
-std::string table_line(const Row& row);
-
 /// A row as --json writes it; null where a sequence has no truth or no poses.
-nlohmann::ordered_json to_json(const Row& row);
+Json to_json(const Row& row);
+
+/// What people see of a row's JSON.
+const benchmark::Table& table();
 
 }  // namespace planemap::bench

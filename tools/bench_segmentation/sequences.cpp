@@ -4,47 +4,23 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <stdexcept>
 #include <tuple>
 
-#include "benchmark/choices.hpp"
-#include "core/files.hpp"
+#include "core/angle.hpp"
 #include "core/moments.hpp"
 #include "core/trajectory.hpp"
+#include "segment/read_image.hpp"
 #include "sensor/camera_file.hpp"
 #include "sensor/dataset.hpp"
-#include "sensor/png.hpp"
 #include "simulator/simulated_source.hpp"
 
 namespace planemap::bench {
 
 namespace {
 
-constexpr std::int64_t kMaxPoseGap_us = 50'000;
-
-/// The pose between the two true poses around a time; nothing where they are further than 50 ms from it.
-std::optional<Pose> pose_near(const Trajectory& truth, std::int64_t utime) {
-    const auto after =
-        std::lower_bound(truth.begin(), truth.end(), utime,
-                         [](const StampedPose& pose, std::int64_t t) { return pose.utime < t; });
-    const auto near = [&](auto it) {
-        return it != truth.end() && std::abs(it->utime - utime) <= kMaxPoseGap_us;
-    };
-    if (!near(after) && (after == truth.begin() || !near(std::prev(after)))) return std::nullopt;
-    return simulator::pose_at(truth, utime);
-}
-
-/// Decodes an image of the depth camera's size; errors name the file.
-template <typename Decode>
-auto read_image(const std::filesystem::path& file, const CameraInfo& camera, const Decode& decode) {
-    const std::string bytes = read_file(file);
-    try {
-        return decode(bytes, camera.depth.width, camera.depth.height, nullptr);
-    } catch (const std::runtime_error& error) {
-        throw std::runtime_error(file.string() + ": " + error.what());
-    }
-}
+constexpr std::int64_t kMaxPoseGap_us = 100'000;
+constexpr int kFrames = 60;  // of a sequence that does not say
 
 /// A recording in the TUM layout: depth, and poses where there are some.
 Sequence open_recording(const std::filesystem::path& folder, std::size_t frames) {
@@ -57,7 +33,7 @@ Sequence open_recording(const std::filesystem::path& folder, std::size_t frames)
         const ListedImage& listed = dataset->frames()[index].depth;
         BenchFrame frame;
         frame.depth = read_image(folder / listed.file, camera, decode_depth_png);
-        if (const auto world_from_color = pose_near(truth, listed.utime))
+        if (const auto world_from_color = pose_at(truth, listed.utime, kMaxPoseGap_us))
             frame.world_from_depth = *world_from_color * camera.color_from_depth;
         return frame;
     };
@@ -138,10 +114,10 @@ Truth truth_of_view(const simulator::World& world, const simulator::View& view, 
     return make_truth(surfaces, planes, depth, camera);
 }
 
-/// The rendered room, 30 s of a hand-held walk through it.
-Sequence open_office(std::size_t frames) {
-    const auto source = std::make_shared<const simulator::SimulatedSource>(
-        simulator::parse_simulator_name("sim:office?frames=900"));
+/// A simulated sensor with its exact truth.
+Sequence open_simulated(const std::string& name, std::size_t frames) {
+    const auto source =
+        std::make_shared<const simulator::SimulatedSource>(simulator::parse_simulator_name(name));
     const auto load = [source](std::size_t index) {
         const simulator::View view = source->depth_view(index);
         BenchFrame frame;
@@ -150,14 +126,14 @@ Sequence open_office(std::size_t frames) {
         frame.truth = truth_of_view(source->world(), view, frame.depth, source->camera());
         return frame;
     };
-    return {"sim:office", source->camera(), evenly_spread(900, frames), load};
+    return {name, source->camera(), evenly_spread(*source->size(), frames), load};
 }
 
 /// One wall, 1 to 3 m away and turned by up to 45 deg, that fills the image, without noise.
 Sequence open_wall(std::size_t frames) {
     const CameraInfo camera = kinect_camera();
     const auto load = [=](std::size_t index) {
-        const double k = static_cast<double>(index), angle = 0.25 * std::numbers::pi * std::sin(k);
+        const double k = static_cast<double>(index), angle = radians(45) * std::sin(k);
         const Eigen::Vector3d normal =
             Eigen::AngleAxisd(angle, Eigen::Vector3d(std::cos(k), std::sin(k), 0)) *
             -Eigen::Vector3d::UnitZ();
@@ -196,35 +172,28 @@ Sequence open_noise(std::size_t frames) {
 }  // namespace
 
 const std::vector<SequenceInfo>& known_sequences() {
-    static const std::vector<SequenceInfo> sequences{
-        {"redkitchen", "Kinect, hand-held, a kitchen", 100},
-        {"fr1_rpy_start", "Kinect, fast rotations over a desk", 50},
-        {"fr3_cabinet", "Xtion, around a cabinet", 58},
-        {"livingroom_micro", "synthetic living room without noise", 50},
-        {"sim:office", "the simulator's room with a Kinect's noise, exact truth", 60},
-        {"plane_labels", "three synthetic living-room images with true labels", 3},
-        {"wall", "worst case: one clean wall that fills the image", 10},
-        {"noise", "worst case: every reading random", 10},
-    };
-    return sequences;
+    static const std::vector<SequenceInfo> kSequences = benchmark::with_recordings({
+        {"sim:office", "the simulator's room with a Kinect's noise, exact truth", "office?frames=900", "",
+         60},
+        {"plane_labels", "three synthetic living-room images with true labels", "", "", 3},
+        {"wall", "worst case: one clean wall that fills the image", "", "", 10},
+        {"noise", "worst case: every reading random", "", "", 10},
+    });
+    return kSequences;
 }
 
-std::vector<SequenceInfo> parse_sequences(const std::string& list) {
-    return chosen("sequences", list, known_sequences());
-}
-
-std::optional<Sequence> open_sequence(const SequenceInfo& info, int frames,
-                                      const std::filesystem::path& data_folder, std::string& missing) {
-    const auto count = static_cast<std::size_t>(frames);
-    if (info.name == "sim:office") return open_office(count);
+Sequence open_sequence(const SequenceInfo& info, int frames, const std::filesystem::path& data_folder) {
+    const auto count = static_cast<std::size_t>(frames > 0        ? frames
+                                                : info.frames > 0 ? info.frames
+                                                                  : kFrames);
     if (info.name == "wall") return open_wall(count);
     if (info.name == "noise") return open_noise(count);
-    const std::filesystem::path folder = data_folder / info.name;
-    if (!std::filesystem::is_directory(folder)) {
-        missing = folder.string() + ": no such folder (set PLANEMAP_DATA, or give --data)";
-        return std::nullopt;
-    }
-    return info.name == "plane_labels" ? open_labelled(folder, count) : open_recording(folder, count);
+    const std::string input = benchmark::input_of(info, data_folder);
+    Sequence sequence = !info.simulator.empty()       ? open_simulated(input, count)
+                        : info.name == "plane_labels" ? open_labelled(input, count)
+                                                      : open_recording(input, count);
+    sequence.name = info.name;
+    return sequence;
 }
 
 std::vector<std::size_t> evenly_spread(std::size_t size, std::size_t count) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "bench_segmentation/truth.hpp"
+#include "benchmark/sequences.hpp"
 #include "core/camera.hpp"
 #include "simulator/world.hpp"
 
@@ -30,22 +31,14 @@ struct Sequence {
     std::function<BenchFrame(std::size_t index)> load;  ///< throws std::runtime_error naming file and reason
 };
 
-/// A sequence by name, as --sequences takes it.
-struct SequenceInfo {
-    std::string name;
-    std::string what;  ///< one line for --help
-    int frames = 0;    ///< run by default
-};
+using benchmark::SequenceInfo;
+
+/// Recordings, a simulated room, labelled images and the worst cases.
 const std::vector<SequenceInfo>& known_sequences();
 
-/// Names of a list "redkitchen,sim:office"; throws std::invalid_argument for an unknown one, listing what
-/// there is.
-std::vector<SequenceInfo> parse_sequences(const std::string& list);
-
-/// Opens a sequence with `frames` frames, or all there are if fewer. Returns nothing, and why in `missing`,
-/// if its data is not there.
-std::optional<Sequence> open_sequence(const SequenceInfo& info, int frames,
-                                      const std::filesystem::path& data_folder, std::string& missing);
+/// Opens a sequence with `frames` frames (0: the sequence's own number), or all there are if fewer. Throws
+/// DataMissing, or std::runtime_error naming what cannot be read.
+Sequence open_sequence(const SequenceInfo& info, int frames, const std::filesystem::path& data_folder);
 
 /// `count` numbers from 0 to size - 1, evenly spread; all of them if there are not more.
 std::vector<std::size_t> evenly_spread(std::size_t size, std::size_t count);

@@ -2,13 +2,11 @@
 #include "bench_segmentation/table1.hpp"
 
 #include <cmath>
-#include <limits>
-#include <nlohmann/json.hpp>
-#include <numbers>
 #include <optional>
 #include <set>
 
 #include "bench_segmentation/metrics.hpp"
+#include "core/angle.hpp"
 
 namespace planemap::bench {
 
@@ -29,7 +27,7 @@ const std::vector<Table1Row> kPaper{
 /// true plane where its middle ray meets it. -1 for none.
 int surface_of(const Plane& found, const Truth& truth) {
     for (const TruePiece& piece : truth.pieces) {
-        if (angle_between(found.normal, piece.plane.normal) > 10 * std::numbers::pi / 180) continue;
+        if (angle_between(found.normal, piece.plane.normal) > radians(10)) continue;
         if (std::abs(found.d - piece.plane.d) <= std::max(0.05, tolerance(piece.plane.d)))
             return piece.surface;
     }
@@ -68,25 +66,14 @@ int largest_surface(const Truth& truth) {
     return largest == truth.pieces.end() ? -1 : largest->surface;
 }
 
-void print_row(const Table1Row& row, std::FILE* out) {
-    char distance[16] = "-";
-    if (std::isfinite(row.estimated_distance_m))
-        std::snprintf(distance, sizeof(distance), "%.3f", row.estimated_distance_m);
-    std::fprintf(out, "%-19s %8.1f %4d %12.5f %9.0f %10s %8.1f\n", row.method.name.c_str(), row.distance_m,
-                 row.method.subsampling, row.seconds, row.inliers, distance, row.false_planes);
-    std::fflush(out);
-}
-
-nlohmann::ordered_json to_json(const Table1Row& row) {
-    const bool found = std::isfinite(row.estimated_distance_m);
+Json to_json(const Table1Row& row) {
     return {{"table", 1},
             {"method", row.method.name},
             {"distance_m", row.distance_m},
             {"subsampling", row.method.subsampling},
             {"runtime_s", row.seconds},
             {"inliers", row.inliers},
-            {"estimated_distance_m",
-             found ? nlohmann::ordered_json(row.estimated_distance_m) : nlohmann::ordered_json(nullptr)},
+            {"estimated_distance_m", benchmark::number(row.estimated_distance_m)},
             {"false_planes", row.false_planes}};
 }
 
@@ -100,7 +87,7 @@ BenchFrame wall_scene(double distance_m, std::uint64_t seed, const CameraInfo& c
     builder.add_panel("floor", {-4, 0, 0}, east, -north, 8, 6, {});
     builder.add_box("box", {{0.45, -0.4, 0}, east, -down}, {0.3, 0.4, 0.95}, {}, {}, {});
     Pose world_from_camera = Pose::Identity();
-    const double turn = 1.5 * static_cast<double>(seed % 5) * std::numbers::pi / 180;
+    const double turn = radians(1.5 * static_cast<double>(seed % 5));
     Eigen::Matrix3d level;
     level << east, down, north;
     world_from_camera.linear() = Eigen::AngleAxisd(turn, Vector3d::UnitZ()) * level;
@@ -126,28 +113,26 @@ Table1Row measure_table1(const MethodName& name, double distance_m, const std::v
             median(distances), false_planes / static_cast<double>(frames.size())};
 }
 
-nlohmann::ordered_json print_table1(const std::vector<MethodName>& methods, std::FILE* out) {
-    std::fprintf(
-        out,
-        "\nTable 1 of the paper: a wall in front of a rendered Kinect, a box and the floor in view; %d "
-        "frames "
-        "a row.\nInliers are counted as the method counts them: subsampled points.\n"
-        "%-19s %8s %4s %12s %9s %10s %8s\n",
-        kFrames, "method", "real m", "sub", "runtime s", "inliers", "estimate m", "false");
+void print_table1(const std::vector<MethodName>& methods, benchmark::Report& report) {
+    const benchmark::Table table{
+        {"method", "method", -19},      {"real m", "distance_m", 8, 1},
+        {"sub", "subsampling", 4},      {"runtime s", "runtime_s", 12, 5},
+        {"inliers", "inliers", 9},      {"estimate m", "estimated_distance_m", 10, 3},
+        {"false", "false_planes", 8, 1}};
+    report.print(
+        "\nTable 1 of the paper: a wall in front of a rendered Kinect, a box and the floor in view; " +
+        std::to_string(kFrames) +
+        " frames a row.\nInliers are counted as the method counts them: subsampled points.\n" +
+        table.heading());
+    for (const Table1Row& row : kPaper) report.print(table.line(to_json(row)));
     const CameraInfo camera = kinect_camera();
-    nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-    for (const Table1Row& row : kPaper) print_row(row, out);
     for (const double distance : kDistances_m) {
         std::vector<BenchFrame> frames;
         for (int seed = 1; seed <= kFrames; ++seed)
             frames.push_back(wall_scene(distance, static_cast<std::uint64_t>(seed), camera));
-        for (const MethodName& method : methods) {
-            const Table1Row row = measure_table1(method, distance, frames, camera);
-            print_row(row, out);
-            rows.push_back(to_json(row));
-        }
+        for (const MethodName& method : methods)
+            report.add(to_json(measure_table1(method, distance, frames, camera)), table);
     }
-    return rows;
 }
 
 }  // namespace planemap::bench

@@ -2,15 +2,16 @@
 // Table 1 of the paper: what subsampling does to the plane in front of the sensor.
 #pragma once
 
-#include <cstdio>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
 #include "bench_segmentation/methods.hpp"
 #include "bench_segmentation/sequences.hpp"
+#include "benchmark/report.hpp"
 
 namespace planemap::bench {
+
+using benchmark::Json;
 
 /// One row: a method at one distance, the median over all frames (false planes: the mean).
 struct Table1Row {
@@ -30,7 +31,7 @@ BenchFrame wall_scene(double distance_m, std::uint64_t seed, const CameraInfo& c
 Table1Row measure_table1(const MethodName& name, double distance_m, const std::vector<BenchFrame>& frames,
                          const CameraInfo& camera);
 
-/// Prints the paper's own rows and ours, method by method, to `out`; returns ours as JSON.
-nlohmann::ordered_json print_table1(const std::vector<MethodName>& methods, std::FILE* out);
+/// Reports the paper's own rows, and ours, method by method.
+void print_table1(const std::vector<MethodName>& methods, benchmark::Report& report);
 
 }  // namespace planemap::bench

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numbers>
 
 #include "bench_segmentation/local_normals.hpp"
+#include "core/angle.hpp"
 
 namespace planemap::bench {
 
@@ -47,16 +47,13 @@ Tally tally(const Truth& truth, const segmentation::Segmentation& segmentation, 
     Tally tally{std::vector(truth.pieces.size(), std::vector<double>(regions)),
                 std::vector<Eigen::Vector3d>(truth.pieces.size(), Eigen::Vector3d::Zero()),
                 std::vector<double>(regions)};
-    for (int v = 0; v < depth.height; ++v) {
-        for (int u = 0; u < depth.width; ++u) {
-            if (!is_trusted(depth(u, v), camera)) continue;
-            const std::size_t label = segmentation.labels(u, v), piece = truth.pieces_of_pixels(u, v);
-            if (label > 0) tally.found[label - 1] += 1;
-            if (piece == 0) continue;
-            tally.sum[piece - 1] += camera.depth.unproject(u, v, camera.metres(depth(u, v)));
-            if (label > 0) tally.overlap[piece - 1][label - 1] += 1;
-        }
-    }
+    for_each_reading(depth, camera, [&](int u, int v, double z) {
+        const std::size_t label = segmentation.labels(u, v), piece = truth.pieces_of_pixels(u, v);
+        if (label > 0) tally.found[label - 1] += 1;
+        if (piece == 0) return;
+        tally.sum[piece - 1] += camera.depth.unproject(u, v, z);
+        if (label > 0) tally.overlap[piece - 1][label - 1] += 1;
+    });
     return tally;
 }
 
@@ -99,8 +96,7 @@ void match_by_iou(const Overlaps& o, const segmentation::Segmentation& segmentat
             score.recalled += truth.large_pieces;
             score.precise += o.found[f] >= least_pixels;
             if (truth.large_pieces == 0) continue;
-            score.angle_deg.push_back(angle_between(plane.normal, truth.plane.normal) * 180 /
-                                      std::numbers::pi);
+            score.angle_deg.push_back(degrees(angle_between(plane.normal, truth.plane.normal)));
             score.distance_m.push_back(std::abs(plane.signed_distance(truth.centroid)));
         }
     }

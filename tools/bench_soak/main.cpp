@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "bench_soak/soak.hpp"
+#include "benchmark/program.hpp"
 #include "core/standard_output.hpp"
 
 namespace planemap {
@@ -25,21 +26,20 @@ int run(const Options& options) {
     const bench_soak::Round round = bench_soak::render_round(options.world, folder);
     std::printf("%s: a round of %zu frames, again and again, %g s apart by their stamps\n%s",
                 options.world.c_str(), round.world_from_camera.size(), options.soak.period_s,
-                bench_soak::table_head().c_str());
-    const auto points = bench_soak::soak(round, options.soak, [](const bench_soak::SoakPoint& point) {
-        print(bench_soak::table_line(point));
+                bench_soak::table().heading().c_str());
+    const auto points = bench_soak::soak(round, options.soak, [](const benchmark::Json& point) {
+        print(bench_soak::table().line(point));
+        finish_printing();
         return !stop_requested();
     });
     std::filesystem::remove_all(folder);
     const std::optional<double> growth = bench_soak::growth(points, options.soak.period_s);
     if (!growth) {
         std::puts("memory after the first half hour: not measured, the walk was not longer than that");
-        finish_printing();
         return 0;
     }
     std::printf("memory at the end: %+.1f %% of that after the first half hour (at most %.0f %%): %s\n",
                 100 * *growth, 100 * kMostGrowth, *growth <= kMostGrowth ? "holds" : "DOES NOT HOLD");
-    finish_printing();
     return *growth <= kMostGrowth ? 0 : 1;
 }
 
@@ -50,7 +50,18 @@ int main(int argc, char** argv) {
     planemap::Options options;
     planemap::PipelineOptions& pipeline = options.soak.pipeline;
     pipeline.with_octomap = false;
-    planemap::Flags flags(
+    const auto add = [&](planemap::Flags& flags) {
+        flags.add("simulated", options.simulated, "Walk through the simulator; there is no other way yet");
+        flags.add("world", options.world, "Simulator name; its walk must go round");
+        flags.add("frames", options.soak.frames, "Frames in all");
+        flags.add("every", options.soak.every, "Frames a line");
+        flags.add("period-s", options.soak.period_s, "Seconds between the stamps of two frames");
+        flags.add("octomap", pipeline.with_octomap, "Build the OctoMap to compare with, too");
+        flags.add(options_of(pipeline.odometry), "odometry-");
+        flags.add(options_of(pipeline.graph), "graph-");
+        flags.add(options_of(pipeline.map.map), "map-");
+    };
+    return planemap::benchmark::run_program(
         "planemap-bench-soak",
         "A walk that goes on for a day: renders one round of a simulated walk, and feeds it again and again\n"
         "through the modules of planemap-run, with stamps that go on. Prints keyframes, memory and time as\n"
@@ -59,21 +70,9 @@ int main(int argc, char** argv) {
         "Columns: frames and lost ones; keyframes that odometry made, that graph and map keep; loop "
         "closures;\n"
         "planes; memory of the process, of graph and map; CPU time a frame; the largest error of a pose.\n"
-        "Example: tools/soak --simulated --frames 10000 --every 500");
-    flags.add("simulated", options.simulated, "Walk through the simulator; there is no other way yet");
-    flags.add("world", options.world, "Simulator name; its walk must go round");
-    flags.add("frames", options.soak.frames, "Frames in all");
-    flags.add("every", options.soak.every, "Frames a line");
-    flags.add("period-s", options.soak.period_s, "Seconds between the stamps of two frames");
-    flags.add("octomap", pipeline.with_octomap, "Build the OctoMap to compare with, too");
-    flags.add(options_of(pipeline.odometry), "odometry-");
-    flags.add(options_of(pipeline.graph), "graph-");
-    flags.add(options_of(pipeline.map.map), "map-");
-    const int parsed = flags.parse(argc, argv);
-    if (parsed >= 0) return parsed;
-    planemap::start_logging("planemap-bench-soak", false);
-    return planemap::run_main("planemap-bench-soak", [&] {
-        if (!options.simulated) throw std::invalid_argument("give --simulated");
-        return planemap::run(options);
-    });
+        "Example: tools/soak --simulated --frames 10000 --every 500",
+        argc, argv, add, [&] {
+            if (!options.simulated) throw std::invalid_argument("give --simulated");
+            return planemap::run(options);
+        });
 }

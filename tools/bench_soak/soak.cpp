@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <bot_core/images_t.hpp>
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 #include <optional>
 #include <stdexcept>
@@ -110,24 +109,24 @@ class Observer {
         const Pose truth = round_.world_from_camera.front().inverse() * round_.world_from_camera.at(frame);
         off_m_ = std::max(off_m_, (world_from_camera.translation() - truth.translation()).norm());
     }
-    SoakPoint point() {
+    Json point() {
         const PoseGraph& graph = pipeline_.graph()->graph();
         const map::PlaneMapper& mapper = pipeline_.map().mapper();
-        SoakPoint point;
-        point.frames = frames_;
-        point.lost = lost_;
-        point.keyframes_made = keyframes_;
-        point.keyframes_graph = graph.trajectory().keyframes.size();
-        point.keyframes_map = mapper.keyframes();
-        point.loop_closures = graph.trajectory().loop_closures;
-        point.planes = mapper.map().planes.size();
-        point.rss_mb = rss_mb();
-        point.heap_mb = heap_mb();
-        point.graph_mb = static_cast<double>(graph.memory_bytes()) / 1e6;
-        point.map_mb = static_cast<double>(mapper.working_bytes() + mapper.memory_bytes()) / 1e6;
-        const double now_ms = cpu_ms();
-        point.cpu_ms = (now_ms - last_ms_) / static_cast<double>(std::max<std::int64_t>(frames_ - last_, 1));
-        point.off_m = off_m_;
+        const double now_ms = cpu_ms(),
+                     frames = static_cast<double>(std::max<std::int64_t>(frames_ - last_, 1));
+        Json point = {{"frames", frames_},
+                      {"lost", lost_},
+                      {"keyframes_made", keyframes_},
+                      {"keyframes_graph", graph.trajectory().keyframes.size()},
+                      {"keyframes_map", mapper.keyframes()},
+                      {"loop_closures", graph.trajectory().loop_closures},
+                      {"planes", mapper.map().planes.size()},
+                      {"rss_mb", rss_mb()},
+                      {"heap_mb", heap_mb()},
+                      {"graph_mb", static_cast<double>(graph.memory_bytes()) / 1e6},
+                      {"map_mb", static_cast<double>(mapper.working_bytes() + mapper.memory_bytes()) / 1e6},
+                      {"cpu_ms", (now_ms - last_ms_) / frames},
+                      {"off_m", off_m_}};
         last_ms_ = now_ms;
         last_ = frames_;
         off_m_ = 0;
@@ -152,16 +151,12 @@ Round render_round(const std::string& simulator_name, const std::filesystem::pat
         round.world_from_camera.push_back(
             source->world_from_color(source->color_utime(static_cast<std::size_t>(i))));
     std::filesystem::create_directories(folder);
-    Bus bus("memq://");
-    SensorShellOptions encoding;
-    encoding.speed = 0;
-    SensorShell sensor(bus, std::move(source), encoding);
-    record(sensor, bus, 0, round.log, [](std::int64_t) {});
+    record(std::move(source), 0, round.log, [](std::int64_t) {});
     return round;
 }
 
-std::vector<SoakPoint> soak(const Round& round, const SoakOptions& options,
-                            const std::function<bool(const SoakPoint&)>& on_point) {
+std::vector<Json> soak(const Round& round, const SoakOptions& options,
+                       const std::function<bool(const Json&)>& on_point) {
     if (options.frames < 1 || options.every < 1 || !(options.period_s >= 0.001 && options.period_s <= 3600))
         throw std::invalid_argument("frames and every must be at least 1, the period 0.001 to 3600 s");
     PipelineOptions pipeline_options = options.pipeline;
@@ -171,7 +166,7 @@ std::vector<SoakPoint> soak(const Round& round, const SoakOptions& options,
     Observer observer(round, pipeline);
     bus.subscribe(channels::kKeyframe, [&](const RawMessage&) { observer.keyframe(); });
     Feed feed(round, options.period_s);
-    std::vector<SoakPoint> points;
+    std::vector<Json> points;
     for (int frames = 1; frames <= options.frames; ++frames) {
         const std::size_t frame = feed.next(bus);
         pipeline.settle();
@@ -183,28 +178,33 @@ std::vector<SoakPoint> soak(const Round& round, const SoakOptions& options,
     return points;
 }
 
-std::optional<double> growth(const std::vector<SoakPoint>& points, double period_s) {
-    const auto half_hour = std::find_if(points.begin(), points.end(), [&](const SoakPoint& point) {
-        return static_cast<double>(point.frames) * period_s >= kHalfHour_s;
+std::optional<double> growth(const std::vector<Json>& points, double period_s) {
+    const auto half_hour = std::find_if(points.begin(), points.end(), [&](const Json& point) {
+        return benchmark::figure(point, "frames") * period_s >= kHalfHour_s;
     });
     if (half_hour == points.end() || half_hour + 1 == points.end()) return std::nullopt;
-    return points.back().rss_mb / half_hour->rss_mb - 1;
+    return benchmark::figure(points.back(), "rss_mb") / benchmark::figure(*half_hour, "rss_mb") - 1;
 }
 
-std::string table_head() {
-    return "  frames   lost | keyframes    graph    map  closures planes |  RSS MB heap MB graph MB  map MB "
-           "| CPU ms "
-           "  off m\n";
-}
-
-std::string table_line(const SoakPoint& p) {
-    char line[200];
-    std::snprintf(line, sizeof(line),
-                  "%8lld %6lld | %9lld %8zu %6zu %9d %6zu | %7.1f %7.2f %8.2f %7.2f | %6.2f %7.4f\n",
-                  static_cast<long long>(p.frames), static_cast<long long>(p.lost),
-                  static_cast<long long>(p.keyframes_made), p.keyframes_graph, p.keyframes_map,
-                  p.loop_closures, p.planes, p.rss_mb, p.heap_mb, p.graph_mb, p.map_mb, p.cpu_ms, p.off_m);
-    return line;
+const benchmark::Table& table() {
+    using benchmark::kBar;
+    static const benchmark::Table kTable{{"frames", "frames", 8},
+                                         {"lost", "lost", 6},
+                                         kBar,
+                                         {"keyframes", "keyframes_made", 9},
+                                         {"graph", "keyframes_graph", 8},
+                                         {"map", "keyframes_map", 6},
+                                         {"closures", "loop_closures", 9},
+                                         {"planes", "planes", 6},
+                                         kBar,
+                                         {"RSS MB", "rss_mb", 7, 1},
+                                         {"heap MB", "heap_mb", 7, 2},
+                                         {"graph MB", "graph_mb", 8, 2},
+                                         {"map MB", "map_mb", 7, 2},
+                                         kBar,
+                                         {"CPU ms", "cpu_ms", 6, 2},
+                                         {"off m", "off_m", 7, 4}};
+    return kTable;
 }
 
 }  // namespace planemap::bench_soak

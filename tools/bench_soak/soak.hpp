@@ -9,10 +9,13 @@
 #include <string>
 #include <vector>
 
+#include "benchmark/table.hpp"
 #include "core/trajectory.hpp"
 #include "pipeline/pipeline.hpp"
 
 namespace planemap::bench_soak {
+
+using benchmark::Json;
 
 /// One round of a walk, rendered, that ends where it began.
 struct Round {
@@ -31,29 +34,19 @@ struct SoakOptions {
     PipelineOptions pipeline;
 };
 
-/// How things stood after so many frames.
-struct SoakPoint {
-    std::int64_t frames = 0, lost = 0;
-    std::int64_t keyframes_made = 0;  ///< by the odometry
-    std::size_t keyframes_graph = 0;  ///< kept
-    std::size_t keyframes_map = 0;    ///< kept
-    int loop_closures = 0;            ///< accepted so far
-    std::size_t planes = 0;
-    double rss_mb = 0, heap_mb = 0;  ///< of the process: in memory, and allocated
-    double graph_mb = 0, map_mb = 0;
-    double cpu_ms = 0;  ///< of the process, a frame, since the last point
-    double off_m = 0;   ///< largest error of a pose in the world since the last point, from the first pose on
-};
-
-/// Feeds the round again and again, with stamps that go on. Ends early when `on_point` returns false.
-std::vector<SoakPoint> soak(const Round& round, const SoakOptions& options,
-                            const std::function<bool(const SoakPoint&)>& on_point);
+/// Feeds the round again and again, with stamps that go on. A point is how things stood after so many frames:
+/// frames and lost ones, keyframes that the odometry made and that graph and map keep, loop closures accepted
+/// so far, planes, MB of the process in memory (rss_mb) and allocated (heap_mb), of graph and map; since the
+/// last point CPU ms a frame, and the largest error of a pose in the world from the first pose on (off_m).
+/// Ends early when `on_point` returns false.
+std::vector<Json> soak(const Round& round, const SoakOptions& options,
+                       const std::function<bool(const Json&)>& on_point);
 
 /// Growth of the process's memory from the first half hour (by the stamps) to the end, a share; nothing when
 /// the run is not longer than that.
-std::optional<double> growth(const std::vector<SoakPoint>& points, double period_s);
+std::optional<double> growth(const std::vector<Json>& points, double period_s);
 
-std::string table_head();
-std::string table_line(const SoakPoint& point);
+/// What people see of a point.
+const benchmark::Table& table();
 
 }  // namespace planemap::bench_soak

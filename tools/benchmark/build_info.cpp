@@ -3,7 +3,7 @@
 
 #include <fstream>
 
-namespace planemap {
+namespace planemap::benchmark {
 
 namespace {
 
@@ -52,4 +52,4 @@ std::string build_info(const std::string& peers) {
     return text;
 }
 
-}  // namespace planemap
+}  // namespace planemap::benchmark

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace planemap {
+namespace planemap::benchmark {
 
 /// All names, with `separator` between them.
 template <typename Info>
@@ -27,22 +27,33 @@ std::string described(const std::vector<Info>& known, std::size_t width) {
     return text;
 }
 
-/// Those of `known` that a comma-separated list names, in its order. Throws std::invalid_argument that leads
-/// with `field` for an unknown name or an empty list.
+/// The one of that name. Throws std::invalid_argument that leads with `field` and lists what there is.
+template <typename Info>
+const Info& named(const std::string& field, const std::string& name, const std::vector<Info>& known) {
+    const auto found =
+        std::find_if(known.begin(), known.end(), [&](const Info& info) { return info.name == name; });
+    if (found == known.end()) {
+        throw std::invalid_argument(field + ": there is no \"" + name + "\", only " + names_of(known, ", "));
+    }
+    return *found;
+}
+
+/// Calls take(word) for each word of a comma-separated list. Throws std::invalid_argument that leads with
+/// `field` for an empty list.
+template <typename Take>
+void for_each_word(const std::string& field, const std::string& list, const Take& take) {
+    std::istringstream words(list);
+    bool any = false;
+    for (std::string word; std::getline(words, word, ','); any = true) take(word);
+    if (!any) throw std::invalid_argument(field + ": none given");
+}
+
+/// Those of `known` that a comma-separated list names, in its order; throws as named() and for_each_word().
 template <typename Info>
 std::vector<Info> chosen(const std::string& field, const std::string& list, const std::vector<Info>& known) {
     std::vector<Info> infos;
-    std::istringstream words(list);
-    for (std::string word; std::getline(words, word, ',');) {
-        const auto found =
-            std::find_if(known.begin(), known.end(), [&](const Info& info) { return info.name == word; });
-        if (found == known.end())
-            throw std::invalid_argument(field + ": there is no \"" + word + "\", only " +
-                                        names_of(known, ", "));
-        infos.push_back(*found);
-    }
-    if (infos.empty()) throw std::invalid_argument(field + ": none given");
+    for_each_word(field, list, [&](const std::string& word) { infos.push_back(named(field, word, known)); });
     return infos;
 }
 
-}  // namespace planemap
+}  // namespace planemap::benchmark

@@ -4,13 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <numbers>
-#include <numeric>
-#include <span>
 #include <stdexcept>
 #include <string>
 #include <tuple>
 
+#include "core/angle.hpp"
 #include "core/rigid_fit.hpp"
 #include "core/validation.hpp"
 
@@ -18,7 +16,6 @@ namespace planemap {
 
 namespace {
 
-constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
 constexpr std::int64_t kSameMomentUs = 5000, kMaxTruthGapUs = 100000;
 
 std::int64_t microseconds(double seconds) {
@@ -68,7 +65,7 @@ std::vector<double> distances_along(const Trajectory& trajectory, DeltaUnit unit
         const Pose motion = relative_motion(previous.world_from_camera, pose.world_from_camera);
         if (unit == DeltaUnit::metres) distance += motion.translation().norm();
         if (unit == DeltaUnit::radians) distance += rotation_angle(motion);
-        if (unit == DeltaUnit::degrees) distance += rotation_angle(motion) * degrees_per_radian;
+        if (unit == DeltaUnit::degrees) distance += degrees(rotation_angle(motion));
         if (unit == DeltaUnit::frames) distance = static_cast<double>(distances.size());
         distances.push_back(distance);
     }
@@ -87,16 +84,10 @@ std::vector<std::pair<std::size_t, std::size_t>> delta_pairs(const Trajectory& e
     return pairs;
 }
 
-double median_of_sorted(std::span<const double> values) {
-    const std::size_t half = values.size() / 2;
-    return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
-}
-
 double median_interval(const std::vector<double>& stamps) {
     std::vector<double> intervals;
     for (std::size_t i = 1; i < stamps.size(); ++i) intervals.push_back(stamps[i] - stamps[i - 1]);
-    std::sort(intervals.begin(), intervals.end());
-    return median_of_sorted(intervals);
+    return statistics(std::move(intervals)).median;
 }
 
 /// The truth at a time, as relative_error() takes it.
@@ -126,23 +117,6 @@ void EvaluationOptions::validate() const {
     errors.require(std::abs(offset_s) <= 1e9, "offset_s", offset_s, "from -1e9 to 1e9");
     errors.require(std::isfinite(scale) && scale > 0, "scale", scale, "greater than 0");
     errors.throw_if_any();
-}
-
-Statistics statistics(std::vector<double> values) {
-    if (values.empty()) return {};
-    std::sort(values.begin(), values.end());
-    const auto n = static_cast<double>(values.size());
-    Statistics result;
-    result.count = values.size();
-    result.rmse = std::sqrt(std::inner_product(values.begin(), values.end(), values.begin(), 0.0) / n);
-    result.mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
-    result.median = median_of_sorted(values);
-    double squares = 0.0;
-    for (const double value : values) squares += (value - result.mean) * (value - result.mean);
-    result.std = std::sqrt(squares / n);
-    result.min = values.front();
-    result.max = values.back();
-    return result;
 }
 
 std::vector<PosePair> associate(const Trajectory& truth, const Trajectory& estimate,
@@ -195,7 +169,7 @@ std::optional<RelativeError> relative_error(const Trajectory& truth, const Traje
     const std::vector<double> truth_stamps_us = stamps_of(truth);
     const std::int64_t offset = microseconds(options.offset_s);
     RelativeError result;
-    std::vector<double> metres, degrees;
+    std::vector<double> errors_m, errors_deg;
     for (const auto& [i, j] : delta_pairs(estimate, delta)) {
         const auto first = truth_at(truth, truth_stamps_us, estimate[i].utime + offset);
         const auto second = truth_at(truth, truth_stamps_us, estimate[j].utime + offset);
@@ -206,12 +180,12 @@ std::optional<RelativeError> relative_error(const Trajectory& truth, const Traje
         Pose motion = relative_motion(estimate[i].world_from_camera, estimate[j].world_from_camera);
         motion.translation() *= options.scale;
         const Pose error = motion.inverse() * relative_motion(*first, *second);
-        metres.push_back(error.translation().norm());
-        degrees.push_back(rotation_angle(error) * degrees_per_radian);
+        errors_m.push_back(error.translation().norm());
+        errors_deg.push_back(degrees(rotation_angle(error)));
     }
-    if (metres.size() < 2) return std::nullopt;
-    result.metres = statistics(std::move(metres));
-    result.degrees = statistics(std::move(degrees));
+    if (errors_m.size() < 2) return std::nullopt;
+    result.metres = statistics(std::move(errors_m));
+    result.degrees = statistics(std::move(errors_deg));
     return result;
 }
 

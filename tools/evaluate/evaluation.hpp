@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/trajectory.hpp"
+#include "evaluate/statistics.hpp"
 
 namespace planemap {
 
@@ -28,14 +29,6 @@ struct EvaluationOptions {
     /// Throws std::invalid_argument that names every bad field.
     void validate() const;
 };
-
-/// Figures of a set of errors, in the errors' unit. The standard deviation is the population's (divided by
-/// count); the median of an even count is the mean of the middle two. All zero for no values.
-struct Statistics {
-    std::size_t count = 0;
-    double rmse = 0, mean = 0, median = 0, std = 0, min = 0, max = 0;
-};
-Statistics statistics(std::vector<double> values);
 
 /// Index into the truth, index into the estimate.
 using PosePair = std::pair<std::size_t, std::size_t>;

@@ -3,17 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "core/angle.hpp"
+#include "evaluate/plane_raster.hpp"
 
 namespace planemap {
 
 namespace {
 
 constexpr double kCell_m = 0.01, kFarthest_m = 0.1, kSteepest_deg = 10;
-
-double degrees(double radians) {
-    return radians * 180 / std::numbers::pi;
-}
 
 struct Shared {
     std::size_t cells_a = 0, cells_b = 0, common = 0;
@@ -26,35 +24,19 @@ struct Shared {
 
 /// The outlines of both planes on a raster in a's plane.
 Shared share(const MapPlane& a, const MapPlane& b) {
+    using evaluation::PlaneRaster;
     const Pose a_from_b = a.world_from_plane().inverse(Eigen::Isometry) * b.world_from_plane();
-    Outline outline_a = a.outline.rings(), outline_b = b.outline.rings();
-    for (Ring& ring : outline_b.rings)
-        for (Eigen::Vector2d& v : ring) v = (a_from_b * Eigen::Vector3d(v.x(), v.y(), 0)).head<2>();
-    Eigen::Vector2d low = Eigen::Vector2d::Constant(1e9), high = -low;
-    for (const Outline* outline : {&outline_a, &outline_b})
-        for (const Ring& ring : outline->rings)
-            for (const Eigen::Vector2d& v : ring) low = low.cwiseMin(v), high = high.cwiseMax(v);
-    if (!(low.x() < high.x())) return {};
-    const Eigen::Vector2i size = ((high - low) / kCell_m).array().ceil().cast<int>() + 1;
-    Mask mask_a(size.x(), size.y()), mask_b(size.x(), size.y());
-    for (Outline* outline : {&outline_a, &outline_b})
-        for (Ring& ring : outline->rings)
-            for (Eigen::Vector2d& v : ring) v = (v - low) / kCell_m;
-    fill(outline_a, mask_a);
-    fill(outline_b, mask_b);
+    const PlaneRaster cells_a = evaluation::rasterised(a.outline.rings(), kCell_m);
+    const PlaneRaster cells_b =
+        evaluation::rasterised(evaluation::projected(b.outline.rings(), a_from_b), kCell_m);
     const Plane b_in_a = a_from_b * Plane{Eigen::Vector3d::UnitZ(), 0};
-    Shared shared;
-    for (int y = 0; y < size.y(); ++y) {
-        for (int x = 0; x < size.x(); ++x) {
-            const bool in_a = mask_a.at(x, y), in_b = mask_b.at(x, y);
-            shared.cells_a += in_a;
-            shared.cells_b += in_b;
-            if (!in_a || !in_b) continue;
-            ++shared.common;
-            const Eigen::Vector2d p = low + kCell_m * Eigen::Vector2d(x + 0.5, y + 0.5);
-            shared.distance_m += std::abs(b_in_a.signed_distance({p.x(), p.y(), 0}));
-        }
-    }
+    Shared shared{cells_a.count(), cells_b.count()};
+    for_each_cell(cells_a, [&](int x, int y) {
+        if (!cells_b.at(x, y)) return;
+        ++shared.common;
+        const Eigen::Vector2d p = cells_a.cell_centre(x, y);
+        shared.distance_m += std::abs(b_in_a.signed_distance({p.x(), p.y(), 0}));
+    });
     if (shared.common > 0) shared.distance_m /= static_cast<double>(shared.common);
     return shared;
 }

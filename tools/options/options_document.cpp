@@ -7,7 +7,7 @@
 #include "odometry/options.hpp"
 #include "segmentation/segmentation.hpp"
 #include "sensor/sensor_shell.hpp"
-#include "sensor/simulator/simulated_source.hpp"
+#include "simulator/simulated_source.hpp"
 
 namespace planemap {
 
@@ -66,10 +66,10 @@ std::string section(const std::string& lead) {
 
 std::string options_document() {
     SensorShellOptions sensor;
-    sim::SimulatorOptions simulator;
-    return kIntroduction + section<SegmentationOptions>("--segmentation-") +
-           section<OdometryOptions>("--odometry-") + section<GraphOptions>("--graph-") +
-           section<MapOptions>("--map-") + section<OctomapOptions>("--octomap-") +
+    simulator::SimulatorOptions simulator;
+    return kIntroduction + section<segmentation::SegmentationOptions>("--segmentation-") +
+           section<odometry::OdometryOptions>("--odometry-") + section<GraphOptions>("--graph-") +
+           section<map::MapOptions>("--map-") + section<OctomapOptions>("--octomap-") +
            section(pacing_of(sensor), "--", "Of `planemap-sensor`.") +
            section(encoding_of(sensor), "--", "Of `planemap-sensor` and `planemap-simulate`.") +
            section(options_of(simulator), "",

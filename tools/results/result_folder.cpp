@@ -88,6 +88,34 @@ std::string date_of(const fs::path& folder) {
     return date_text(newest);
 }
 
+/// What a run that did not end left, set aside.
+struct Aside {
+    std::string date;
+    int number;
+    fs::path path;
+};
+
+/// The folders of set_aside(), the oldest first: by date, then by the number that tells those of one second.
+std::vector<Aside> asides_in(const fs::path& folder, const std::string& stem) {
+    // YYYYMMDD-HHMMSS-N
+    constexpr std::size_t kDay = 8, kDate = 15, kMostDigits = 9;
+    std::vector<Aside> found;
+    for (const fs::path& entry : entries_of(folder)) {
+        const std::string name = entry.filename().string();
+        if (!name.starts_with(stem)) continue;
+        const std::string rest = name.substr(stem.size());
+        if (rest.size() <= kDate + 1 || rest.size() > kDate + 1 + kMostDigits) continue;
+        const std::string date = rest.substr(0, kDate), number = rest.substr(kDate + 1);
+        if (rest[kDay] == '-' && rest[kDate] == '-' && is_number(date.substr(0, kDay)) &&
+            is_number(date.substr(kDay + 1)) && is_number(number))
+            found.push_back({date, std::stoi(number), entry});
+    }
+    std::sort(found.begin(), found.end(), [](const Aside& a, const Aside& b) {
+        return std::tie(a.date, a.number) < std::tie(b.date, b.number);
+    });
+    return found;
+}
+
 }  // namespace
 
 ResultFolder::ResultFolder(fs::path folder, std::vector<std::string> names, std::string workspace_name,
@@ -234,27 +262,6 @@ void ResultFolder::move_into_place() {
     sync_folder(folder_);
 }
 
-/// The folders of set_aside(), the oldest first: by date, then by the number that tells those of one second.
-std::vector<ResultFolder::Aside> ResultFolder::asides() const {
-    // YYYYMMDD-HHMMSS-N
-    constexpr std::size_t kDay = 8, kDate = 15, kMostDigits = 9;
-    std::vector<Aside> found;
-    for (const fs::path& entry : entries_of(folder_)) {
-        const std::string name = entry.filename().string();
-        if (!name.starts_with(aside_stem())) continue;
-        const std::string rest = name.substr(aside_stem().size());
-        if (rest.size() <= kDate + 1 || rest.size() > kDate + 1 + kMostDigits) continue;
-        const std::string date = rest.substr(0, kDate), number = rest.substr(kDate + 1);
-        if (rest[kDay] == '-' && rest[kDate] == '-' && is_number(date.substr(0, kDay)) &&
-            is_number(date.substr(kDay + 1)) && is_number(number))
-            found.push_back({date, std::stoi(number), entry});
-    }
-    std::sort(found.begin(), found.end(), [](const Aside& a, const Aside& b) {
-        return std::tie(a.date, a.number) < std::tie(b.date, b.number);
-    });
-    return found;
-}
-
 std::string ResultFolder::aside_stem() const {
     return (workspace_.starts_with('.') ? workspace_.substr(1) : workspace_) + "-";
 }
@@ -262,13 +269,13 @@ std::string ResultFolder::aside_stem() const {
 fs::path ResultFolder::set_aside() {
     const std::string date = date_of(workspace());
     int number = 1;
-    for (const Aside& aside : asides())
+    for (const Aside& aside : asides_in(folder_, aside_stem()))
         if (aside.date == date) number = aside.number + 1;
     const fs::path kept = folder_ / (aside_stem() + date + "-" + std::to_string(number));
     remove_scraps();
     rename_or_throw(workspace(), kept);
     made_.clear();
-    const std::vector<Aside> all = asides();
+    const std::vector<Aside> all = asides_in(folder_, aside_stem());
     for (std::size_t i = 0; i + kKeptAside < all.size(); ++i) {
         remove_or_throw(all[i].path);
         notes_.push_back(all[i].path.string() + ": removed, the newest " + std::to_string(kKeptAside) +

@@ -63,11 +63,6 @@ class ResultFolder {
     void discard();
 
   private:
-    struct Aside {
-        std::string date;
-        int number;
-        std::filesystem::path path;
-    };
     std::filesystem::path workspace() const { return folder_ / workspace_; }
     std::filesystem::path moving() const { return folder_ / (workspace_ + "-whole"); }
     std::filesystem::path lock_file() const { return folder_ / (workspace_ + ".lock"); }
@@ -78,7 +73,6 @@ class ResultFolder {
     void remove_scraps() const;
     void move_into_place();
     std::string aside_stem() const;
-    std::vector<Aside> asides() const;
 
     std::filesystem::path folder_;
     std::vector<std::string> names_;

@@ -235,6 +235,11 @@ bool Input::feed() {
     return more;
 }
 
+void feed_all(Input& input, std::int64_t max_frames,
+              const std::function<void(std::int64_t frames)>& after_each) {
+    while ((max_frames == 0 || input.frames() < max_frames) && input.feed()) after_each(input.frames());
+}
+
 std::unique_ptr<Input> open_input(const std::string& name, Bus& bus, const std::optional<CameraInfo>& camera,
                                   const FrameRange& frames) {
     std::error_code ignored;

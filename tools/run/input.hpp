@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -54,5 +55,10 @@ class Input {
 /// std::invalid_argument with one line that names input and reason.
 std::unique_ptr<Input> open_input(const std::string& name, Bus& bus, const std::optional<CameraInfo>& camera,
                                   const FrameRange& frames = {});
+
+/// Feeds an input to its end, or until it gave `max_frames` (0: all). Calls `after_each` with the frames so
+/// far.
+void feed_all(Input& input, std::int64_t max_frames,
+              const std::function<void(std::int64_t frames)>& after_each);
 
 }  // namespace planemap

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "run/progress.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <optional>
@@ -34,38 +32,32 @@ std::string time_left(std::optional<double> share, double elapsed_s) {
 
 }  // namespace
 
-Progress::Progress(bool quiet)
-    : quiet_(quiet),
-      terminal_(::isatty(STDERR_FILENO) == 1),
-      start_(std::chrono::steady_clock::now()),
-      last_(start_) {
-    if (terminal_ && !quiet_) log_over_a_drawn_line(true);
+Progress::Progress(bool quiet) : line_(quiet), start_(std::chrono::steady_clock::now()), last_(start_) {
+    if (line_.is_drawn_in_place()) log_over_a_drawn_line(true);
 }
 
 void Progress::show(const Input& input, Pipeline& pipeline) {
-    if (quiet_) return;
+    if (!line_.is_due()) return;
     const auto now = std::chrono::steady_clock::now();
     const double since = std::chrono::duration<double>(now - last_).count();
-    if (since < (terminal_ ? 0.25 : 5.0)) return;
     const double rate = static_cast<double>(input.frames() - last_frames_) / since;
     const OdometryEstimate* latest = pipeline.latest();
     const bool lost = latest == nullptr || latest->status == TrackingStatus::kLost;
     const std::string share =
         input.progress() ? std::to_string(static_cast<int>(100 * *input.progress())) + " %, " : "";
-    std::fprintf(stderr, "%sframe %lld, %s%.0f frames/s%s, %zu planes, %zu keyframes, %s%s",
-                 terminal_ ? "\r\033[K" : "", static_cast<long long>(input.frames()), share.c_str(), rate,
-                 time_left(input.progress(), std::chrono::duration<double>(now - start_).count()).c_str(),
-                 pipeline.map().mapper().map().planes.size(), pipeline.keyframes().keyframes.size(),
-                 lost ? "lost" : "tracked", terminal_ ? "" : "\n");
-    std::fflush(stderr);
-    drawn_ = terminal_;
+    char text[160];
+    std::snprintf(text, sizeof(text), "frame %lld, %s%.0f frames/s%s, %zu planes, %zu keyframes, %s",
+                  static_cast<long long>(input.frames()), share.c_str(), rate,
+                  time_left(input.progress(), std::chrono::duration<double>(now - start_).count()).c_str(),
+                  pipeline.map().mapper().map().planes.size(), pipeline.keyframes().keyframes.size(),
+                  lost ? "lost" : "tracked");
+    line_.show(text);
     last_ = now;
     last_frames_ = input.frames();
 }
 
 void Progress::end() {
-    if (drawn_) std::fputs("\n", stderr);
-    drawn_ = false;
+    line_.end();
     log_over_a_drawn_line(false);
 }
 

@@ -4,6 +4,8 @@
 #include <chrono>
 #include <cstdint>
 
+#include "results/progress_line.hpp"
+
 namespace planemap {
 
 class Input;
@@ -19,7 +21,7 @@ class Progress {
     void end();
 
   private:
-    bool quiet_, terminal_, drawn_ = false;
+    ProgressLine line_;
     std::chrono::steady_clock::time_point start_, last_;
     std::int64_t last_frames_ = 0;
 };

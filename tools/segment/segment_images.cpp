@@ -1,59 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "segment/segment_images.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <chrono>
-#include <cmath>
-#include <cstdio>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "core/files.hpp"
+#include "evaluate/statistics.hpp"
+#include "messages/module_status.hpp"
+#include "results/progress_line.hpp"
 #include "results/result_folder.hpp"
 #include "segment/overlay.hpp"
+#include "segment/read_image.hpp"
 #include "segment/region_json.hpp"
-#include "segment/thread_time.hpp"
-#include "sensor/png.hpp"
 
 namespace planemap {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-/// "37 of 100" on stderr: often on a terminal, every 5 s elsewhere, and not at all for one image.
-class Progress {
-  public:
-    Progress(std::size_t total, bool quiet) : total_(total), shown_(!quiet && total > 1) {}
-    ~Progress() {
-        if (shown_ && terminal_) std::fputs("\r\033[K", stderr);
-    }
-    Progress(const Progress&) = delete;
-    Progress& operator=(const Progress&) = delete;
-
-    void show(std::size_t done) {
-        const auto now = Clock::now();
-        if (!shown_ || now - last_ < (terminal_ ? std::chrono::milliseconds(100) : std::chrono::seconds(5)))
-            return;
-        std::fprintf(stderr, "%simage %zu of %zu%s", terminal_ ? "\r\033[K" : "", done, total_,
-                     terminal_ ? "" : "\n");
-        last_ = now;
-    }
-
-  private:
-    std::size_t total_;
-    bool shown_, terminal_ = ::isatty(STDERR_FILENO) == 1;
-    Clock::time_point last_ = Clock::now();
-};
-
-/// The value at a share of sorted values, by nearest rank.
-double at_share(const std::vector<double>& sorted, double share) {
-    const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(sorted.size())));
-    return sorted[std::max<std::size_t>(rank, 1) - 1];
-}
 
 /// Thread CPU time of `repeat` runs; the segmenter has been run on the image before.
 nlohmann::ordered_json measure(segmentation::Segmenter& segmenter, const DepthImage& depth,
@@ -62,21 +26,11 @@ nlohmann::ordered_json measure(segmentation::Segmenter& segmenter, const DepthIm
     segmentation::Segmentation unused;
     segmenter.segment(depth, camera, unused);
     for (int i = 0; i < repeat; ++i) {
-        const double start = thread_ms();
+        const double start = thread_cpu_ms();
         segmenter.segment(depth, camera, unused);
-        ms.push_back(thread_ms() - start);
+        ms.push_back(thread_cpu_ms() - start);
     }
-    std::sort(ms.begin(), ms.end());
-    return {{"median", at_share(ms, 0.5)}, {"p95", at_share(ms, 0.95)}, {"repeats", repeat}};
-}
-
-DepthImage read_depth(const std::filesystem::path& file, const CameraInfo& camera, bool& end_missing) {
-    const std::string bytes = read_file(file);
-    try {
-        return decode_depth_png(bytes, camera.depth.width, camera.depth.height, &end_missing);
-    } catch (const std::runtime_error& error) {
-        throw std::runtime_error(file.string() + ": " + error.what());
-    }
+    return {{"median", nearest_rank(ms, 0.5)}, {"p95", nearest_rank(ms, 0.95)}, {"repeats", repeat}};
 }
 
 /// Images that are cut short behind their last pixel, in one line; empty for none.
@@ -153,14 +107,16 @@ SegmentImagesReport segment_images(const SegmentImagesOptions& options, const Ca
     const std::unique_ptr<segmentation::Segmenter> segmenter =
         segmentation::make_segmenter(options.segmentation);
     SegmentImagesReport report;
-    Progress progress(options.images.size(), options.quiet);
+    ProgressLine progress(options.quiet || options.images.size() < 2);
     segmentation::Segmentation segmentation;
     std::vector<std::filesystem::path> cut;
     const auto segment_one = [&](const std::filesystem::path& image) {
         const ResultNames names(image);
         refuse_to_overwrite(options.output, names, options.images);
         bool end_missing = false;
-        const DepthImage depth = read_depth(image, camera, end_missing);
+        const DepthImage depth = read_image(image, camera, [&](const auto& bytes, int width, int height) {
+            return decode_depth_png(bytes, width, height, &end_missing);
+        });
         if (end_missing) cut.push_back(image);
         segmenter->segment(depth, camera, segmentation);
         nlohmann::ordered_json json{{"image", image.string()}, {"width", depth.width},
@@ -178,7 +134,8 @@ SegmentImagesReport segment_images(const SegmentImagesOptions& options, const Ca
         report.regions += segmentation.regions.size();
     };
     for (std::size_t i = 0; i < options.images.size(); ++i) {
-        progress.show(i);
+        if (progress.is_due())
+            progress.show("image " + std::to_string(i) + " of " + std::to_string(options.images.size()));
         try {
             segment_one(options.images[i]);
         } catch (const std::exception& failure) {

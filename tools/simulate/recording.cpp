@@ -63,4 +63,14 @@ std::int64_t record(SensorShell& sensor, Bus& bus, std::int64_t max_frames, cons
     return recorder.bytes();
 }
 
+std::int64_t record(std::unique_ptr<FrameSource> source, std::int64_t max_frames,
+                    const std::filesystem::path& log,
+                    const std::function<void(std::int64_t frames)>& on_frame) {
+    Bus bus("memq://");
+    SensorShellOptions options;
+    options.speed = 0;
+    SensorShell sensor(bus, std::move(source), options);
+    return record(sensor, bus, max_frames, log, on_frame);
+}
+
 }  // namespace planemap

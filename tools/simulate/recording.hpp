@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 
 #include "sensor/sensor_shell.hpp"
 
@@ -15,6 +16,11 @@ namespace planemap {
 /// cannot be written; what was written until then is removed. Who must not see half a log gives a name of a
 /// workspace, and renames.
 std::int64_t record(SensorShell& sensor, Bus& bus, std::int64_t max_frames, const std::filesystem::path& log,
+                    const std::function<void(std::int64_t frames)>& on_frame);
+
+/// The same of a source, as fast as it can be written.
+std::int64_t record(std::unique_ptr<FrameSource> source, std::int64_t max_frames,
+                    const std::filesystem::path& log,
                     const std::function<void(std::int64_t frames)>& on_frame);
 
 }  // namespace planemap

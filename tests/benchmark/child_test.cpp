@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench_odometry/child.hpp"
+#include "benchmark/child.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 #include "messages/module_status.hpp"
 #include "temporary_folder.hpp"
 
-namespace planemap::bench_odometry {
+namespace planemap::benchmark {
 namespace {
 
 TEST(Child, ReturnsWhatItFoundHoweverLong) {
@@ -50,4 +50,4 @@ TEST(Child, ItsErrorIsOurs) {
 }
 
 }  // namespace
-}  // namespace planemap::bench_odometry
+}  // namespace planemap::benchmark

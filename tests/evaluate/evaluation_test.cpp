@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "evaluate/evaluation.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -6,14 +8,14 @@
 #include <limits>
 #include <random>
 
-#include "evaluate/evaluation.hpp"
+#include "core/angle.hpp"
 
 namespace planemap {
 namespace {
 
 using testing::ElementsAre;
 
-constexpr double kDegree = M_PI / 180.0;
+constexpr double kDegree = radians(1);
 
 StampedPose at(double seconds, double x, double y, double z) {
     return {std::llround(seconds * 1e6), make_pose({x, y, z}, Eigen::Quaterniond::Identity())};

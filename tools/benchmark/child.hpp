@@ -5,7 +5,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-namespace planemap::bench_odometry {
+namespace planemap::benchmark {
 
 struct ChildResult {
     nlohmann::json value;  ///< what the work returned
@@ -18,4 +18,4 @@ struct ChildResult {
 /// its memory counts in the child's peak.
 ChildResult run_in_child(const std::function<nlohmann::json()>& work);
 
-}  // namespace planemap::bench_odometry
+}  // namespace planemap::benchmark

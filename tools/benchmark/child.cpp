@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench_odometry/child.hpp"
+#include "benchmark/child.hpp"
 
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -12,7 +12,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace planemap::bench_odometry {
+namespace planemap::benchmark {
 
 namespace {
 
@@ -83,4 +83,4 @@ ChildResult run_in_child(const std::function<nlohmann::json()>& work) {
             static_cast<double>(usage.ru_maxrss) / 1024};  // Linux counts in KiB
 }
 
-}  // namespace planemap::bench_odometry
+}  // namespace planemap::benchmark

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench_map/judge.hpp"
+#include "evaluate/plane_judge.hpp"
 
 #include <gtest/gtest.h>
 
-#include "bench_map/room.hpp"
+#include "core/angle.hpp"
+#include "evaluate/room.hpp"
 
-namespace planemap::bench_map {
+namespace planemap::evaluation {
 namespace {
 
 Judgement judged(const PlaneMap& map) {
@@ -124,7 +125,7 @@ TEST(Judge, DoesNotFindAPlaneFromItsBack) {
 
 TEST(Judge, MeasuresWhatIsAskew) {
     std::vector<Face> faces = room();
-    const Eigen::AngleAxisd turn(2 * 3.14159265358979 / 180, Eigen::Vector3d::UnitZ());
+    const Eigen::AngleAxisd turn(radians(2), Eigen::Vector3d::UnitZ());
     faces[1].normal = turn * faces[1].normal;
     faces[1].x = turn * faces[1].x;
     faces[2].centre.x() += 0.03;
@@ -201,4 +202,4 @@ TEST(Judge, NamesTheTruePlanesThatShareAMapPlane) {
 }
 
 }  // namespace
-}  // namespace planemap::bench_map
+}  // namespace planemap::evaluation

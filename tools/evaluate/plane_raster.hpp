@@ -2,35 +2,38 @@
 #pragma once
 
 #include "core/outline.hpp"
+#include "core/pose.hpp"
 
-namespace planemap::bench_map {
+namespace planemap::evaluation {
 
 /// A part of a plane as cells of a lattice over the plane's x and y: cell (x, y) is the square [x, x+1] x
-/// [y, y+1] times kCell_m. Rasters of one plane have the same lattice, whatever part of it they hold.
+/// [y, y+1] times cell_m. Rasters of one plane and cell size have the same lattice, whatever part of it they
+/// hold.
 struct PlaneRaster {
     static constexpr double kCell_m = 0.025;
 
+    double cell_m = kCell_m;
     int x0 = 0, y0 = 0;  ///< lattice cell of the mask's first
     Mask mask;
 
     PlaneRaster() = default;
-    /// Empty, over the given corners (metres) and `margin` cells more on each side.
-    PlaneRaster(const Eigen::Vector2d& low, const Eigen::Vector2d& high, int margin);
+    /// Empty, over the given corners (metres).
+    PlaneRaster(const Eigen::Vector2d& low, const Eigen::Vector2d& high, double cell = kCell_m);
 
     bool at(int x, int y) const { return mask.at(x - x0, y - y0); }
+    /// Middle of a lattice cell, metres.
+    Eigen::Vector2d cell_centre(int x, int y) const { return cell_m * Eigen::Vector2d(x + 0.5, y + 0.5); }
     std::size_t count() const;
-    double area() const { return static_cast<double>(count()) * kCell_m * kCell_m; }
+    double area() const { return static_cast<double>(count()) * cell_m * cell_m; }
     /// Middle of the set cells, metres. Precondition: there is one.
     Eigen::Vector2d centre() const;
 };
 
-/// Middle of a lattice cell, metres.
-inline Eigen::Vector2d cell_centre(int x, int y) {
-    return PlaneRaster::kCell_m * Eigen::Vector2d(x + 0.5, y + 0.5);
-}
+/// The outline (metres) of one plane on another, whose frame it is turned into and projected along z of.
+Outline projected(Outline outline, const Pose& to_from_outline);
 
 /// The cells whose middle is inside the outline (metres).
-PlaneRaster rasterised(const Outline& outline);
+PlaneRaster rasterised(const Outline& outline, double cell_m = PlaneRaster::kCell_m);
 
 /// Calls visit(x, y) for each set cell.
 template <typename Visit>
@@ -40,7 +43,7 @@ void for_each_cell(const PlaneRaster& raster, const Visit& visit) {
             if (raster.mask.at(x, y)) visit(x + raster.x0, y + raster.y0);
 }
 
-/// All cells that are set in one of the two.
+/// All cells that are set in one of the two. Precondition: their cells have one size.
 PlaneRaster united(const PlaneRaster& a, const PlaneRaster& b);
 
-}  // namespace planemap::bench_map
+}  // namespace planemap::evaluation

@@ -3,15 +3,28 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
-#include "bench_map/truth.hpp"
 #include "core/plane_map.hpp"
+#include "evaluate/plane_raster.hpp"
 
-namespace planemap::bench_map {
+namespace planemap::evaluation {
 
 inline constexpr double kMaxAngle_deg = 10,
                         kMaxDistance_m = 0.05;  ///< the paper's, for one and the same plane
 inline constexpr double kLeastArea_m2 = 0.5;    ///< of a plane that counts
+
+/// A plane as far as the camera has seen it.
+struct TruePlane {
+    std::string name;  ///< of the surface that most of it is; "+2" counts others in the same plane
+    Plane plane;       ///< world frame; the normal points to the side that can be seen
+    Pose world_from_plane = Pose::Identity();  ///< z is the normal; frame of the raster
+    PlaneRaster visible;                       ///< at least one cell
+
+    /// Middle of the visible surface, world frame.
+    Eigen::Vector3d centre() const;
+};
 
 /// What became of one true plane.
 struct TruePlaneVerdict {
@@ -83,4 +96,4 @@ struct Judgement {
 /// if their normals are more than 10 deg apart.
 Judgement judge(const std::vector<TruePlane>& truth, const PlaneMap& map, const Pose& truth_from_map);
 
-}  // namespace planemap::bench_map
+}  // namespace planemap::evaluation

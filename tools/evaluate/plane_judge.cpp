@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench_map/judge.hpp"
+#include "evaluate/plane_judge.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
-namespace planemap::bench_map {
+#include "core/angle.hpp"
+
+namespace planemap::evaluation {
 
 namespace {
 
-constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr double kParallel_deg = 5, kLeastDistance_m = 0.3, kSameRoom_m = 6;
 constexpr double kMergeGap_m = 0.5, kLeastShare_m2 = 0.05;
 constexpr double kCellArea = PlaneRaster::kCell_m * PlaneRaster::kCell_m;
@@ -35,22 +35,19 @@ std::vector<Candidate> candidates_of(const PlaneMap& map, const Pose& truth_from
 }
 
 /// The candidate's outline on the true plane.
-PlaneRaster projected(const Candidate& candidate, const TruePlane& truth) {
-    const Pose true_from_plane = truth.world_from_plane.inverse(Eigen::Isometry) * candidate.truth_from_plane;
-    Outline outline = candidate.outline;
-    for (Ring& ring : outline.rings)
-        for (Eigen::Vector2d& v : ring) v = (true_from_plane * Eigen::Vector3d(v.x(), v.y(), 0)).head<2>();
-    return rasterised(outline);
+PlaneRaster raster_on(const TruePlane& truth, const Candidate& candidate) {
+    return rasterised(projected(
+        candidate.outline, truth.world_from_plane.inverse(Eigen::Isometry) * candidate.truth_from_plane));
 }
 
 /// Square metres of the true plane's visible surface that the candidate covers.
 double overlap(const Candidate& candidate, const TruePlane& truth) {
-    if (angle_between(candidate.plane.normal, truth.plane.normal) * kDegrees > kMaxAngle_deg) return 0;
+    if (degrees(angle_between(candidate.plane.normal, truth.plane.normal)) > kMaxAngle_deg) return 0;
     const Plane seen_from_truth = truth.world_from_plane.inverse(Eigen::Isometry) * candidate.plane;
     std::size_t cells = 0;
-    for_each_cell(projected(candidate, truth), [&](int x, int y) {
+    for_each_cell(raster_on(truth, candidate), [&](int x, int y) {
         if (!truth.visible.at(x, y)) return;
-        const Eigen::Vector2d p = cell_centre(x, y);
+        const Eigen::Vector2d p = truth.visible.cell_centre(x, y);
         cells += std::abs(seen_from_truth.signed_distance({p.x(), p.y(), 0})) <= kMaxDistance_m;
     });
     return static_cast<double>(cells) * kCellArea;
@@ -92,7 +89,7 @@ TruePlaneVerdict verdict_of(const std::vector<TruePlane>& all, std::size_t colum
         if (row[column] > most) most = row[column], best = i;
         if (row[column] < *std::max_element(row.begin(), row.end())) continue;
         if (row[column] > kLeastArea_m2) verdict.parts.push_back(candidates[i].id);
-        outlines = united(outlines, projected(candidates[i], truth));
+        outlines = united(outlines, raster_on(truth, candidates[i]));
     }
     if (most == 0) {
         verdict.united_m2 = verdict.area;
@@ -101,9 +98,9 @@ TruePlaneVerdict verdict_of(const std::vector<TruePlane>& all, std::size_t colum
     verdict.best = candidates[best].id;
     verdict.covered = most / verdict.area;
     verdict.found = verdict.covered >= 0.5;
-    verdict.angle_deg = angle_between(candidates[best].plane.normal, truth.plane.normal) * kDegrees;
+    verdict.angle_deg = degrees(angle_between(candidates[best].plane.normal, truth.plane.normal));
     verdict.distance_m = -candidates[best].plane.signed_distance(truth.centre());
-    outlines = united(outlines, projected(candidates[best], truth));
+    outlines = united(outlines, raster_on(truth, candidates[best]));
     std::size_t common = 0, beside = 0;
     for_each_cell(outlines, [&](int x, int y) {
         if (truth.visible.at(x, y)) {
@@ -147,7 +144,7 @@ std::vector<SharedPlane> shared_among(const std::vector<Candidate>& candidates,
 
 /// Angle between the normals, or between one and the other's opposite if that is less.
 double undirected_deg(const Plane& a, const Plane& b) {
-    const double angle = angle_between(a.normal, b.normal) * kDegrees;
+    const double angle = degrees(angle_between(a.normal, b.normal));
     return std::min(angle, 180 - angle);
 }
 
@@ -167,9 +164,8 @@ struct Match {
 void measure(const Match& a, const Match& b, Judgement& judgement) {
     if (undirected_deg(a.truth, b.truth) > kParallel_deg) {
         if ((a.centre - b.centre).norm() > kSameRoom_m) return;
-        judgement.angles.push_back({a.index, b.index,
-                                    angle_between(a.truth.normal, b.truth.normal) * kDegrees,
-                                    angle_between(a.map.normal, b.map.normal) * kDegrees});
+        judgement.angles.push_back({a.index, b.index, degrees(angle_between(a.truth.normal, b.truth.normal)),
+                                    degrees(angle_between(a.map.normal, b.map.normal))});
         return;
     }
     const double truth = distance_between(a.truth, a.centre, b.truth, b.centre);
@@ -187,7 +183,7 @@ bool near_each_other(const TruePlane& a, const TruePlane& b) {
     int count = 0;
     for_each_cell(a.visible, [&](int x, int y) {
         if (near || count++ % kStride != 0) return;
-        const Eigen::Vector2d p = cell_centre(x, y);
+        const Eigen::Vector2d p = a.visible.cell_centre(x, y);
         const Eigen::Vector3d q = b_from_a * Eigen::Vector3d(p.x(), p.y(), 0);
         const int column = static_cast<int>(std::floor(q.x() / PlaneRaster::kCell_m));
         const int row = static_cast<int>(std::floor(q.y() / PlaneRaster::kCell_m));
@@ -203,7 +199,7 @@ void find_look_alikes(const std::vector<TruePlane>& truth, Judgement& judgement)
         for (std::size_t j = i + 1; j < truth.size(); ++j) {
             if (!judgement.planes[i].counts() || !judgement.planes[j].counts()) continue;
             const Plane &a = truth[i].plane, &b = truth[j].plane;
-            const double angle = angle_between(a.normal, b.normal) * kDegrees;
+            const double angle = degrees(angle_between(a.normal, b.normal));
             if (angle > kMaxAngle_deg) continue;
             const double apart = distance_between(a, truth[i].centre(), b, truth[j].centre());
             if (apart > kMaxDistance_m || !near_each_other(truth[i], truth[j])) continue;
@@ -213,6 +209,11 @@ void find_look_alikes(const std::vector<TruePlane>& truth, Judgement& judgement)
 }
 
 }  // namespace
+
+Eigen::Vector3d TruePlane::centre() const {
+    const Eigen::Vector2d c = visible.centre();
+    return world_from_plane * Eigen::Vector3d(c.x(), c.y(), 0);
+}
 
 double PairMeasure::error() const {
     return std::abs(map - truth);
@@ -267,4 +268,4 @@ Judgement judge(const std::vector<TruePlane>& truth, const PlaneMap& map, const 
     return judgement;
 }
 
-}  // namespace planemap::bench_map
+}  // namespace planemap::evaluation

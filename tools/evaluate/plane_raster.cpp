@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench_map/plane_raster.hpp"
+#include "evaluate/plane_raster.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace planemap::bench_map {
+namespace planemap::evaluation {
 
-PlaneRaster::PlaneRaster(const Eigen::Vector2d& low, const Eigen::Vector2d& high, int margin)
-    : x0(static_cast<int>(std::floor(low.x() / kCell_m)) - margin),
-      y0(static_cast<int>(std::floor(low.y() / kCell_m)) - margin),
-      mask(static_cast<int>(std::ceil(high.x() / kCell_m)) + margin - x0,
-           static_cast<int>(std::ceil(high.y() / kCell_m)) + margin - y0) {}
+PlaneRaster::PlaneRaster(const Eigen::Vector2d& low, const Eigen::Vector2d& high, double cell)
+    : cell_m(cell),
+      x0(static_cast<int>(std::floor(low.x() / cell_m))),
+      y0(static_cast<int>(std::floor(low.y() / cell_m))),
+      mask(static_cast<int>(std::ceil(high.x() / cell_m)) - x0,
+           static_cast<int>(std::ceil(high.y() / cell_m)) - y0) {}
 
 std::size_t PlaneRaster::count() const {
     return mask.cells.size() -
@@ -23,15 +24,21 @@ Eigen::Vector2d PlaneRaster::centre() const {
     return sum / static_cast<double>(count());
 }
 
-PlaneRaster rasterised(const Outline& outline) {
+Outline projected(Outline outline, const Pose& to_from_outline) {
+    for (Ring& ring : outline.rings)
+        for (Eigen::Vector2d& v : ring) v = (to_from_outline * Eigen::Vector3d(v.x(), v.y(), 0)).head<2>();
+    return outline;
+}
+
+PlaneRaster rasterised(const Outline& outline, double cell_m) {
     if (outline.vertex_count() == 0) return {};
     Eigen::Vector2d low = Eigen::Vector2d::Constant(1e9), high = -low;
     for (const Ring& ring : outline.rings)
         for (const Eigen::Vector2d& v : ring) low = low.cwiseMin(v), high = high.cwiseMax(v);
-    PlaneRaster raster(low, high, 0);
+    PlaneRaster raster(low, high, cell_m);
     Outline in_cells = outline;
     for (Ring& ring : in_cells.rings)
-        for (Eigen::Vector2d& v : ring) v = v / PlaneRaster::kCell_m - Eigen::Vector2d(raster.x0, raster.y0);
+        for (Eigen::Vector2d& v : ring) v = v / cell_m - Eigen::Vector2d(raster.x0, raster.y0);
     fill(in_cells, raster.mask);
     return raster;
 }
@@ -40,6 +47,7 @@ PlaneRaster united(const PlaneRaster& a, const PlaneRaster& b) {
     if (a.mask.cells.empty()) return b;
     if (b.mask.cells.empty()) return a;
     PlaneRaster both;
+    both.cell_m = a.cell_m;
     both.x0 = std::min(a.x0, b.x0);
     both.y0 = std::min(a.y0, b.y0);
     both.mask = Mask(std::max(a.x0 + a.mask.width, b.x0 + b.mask.width) - both.x0,
@@ -49,4 +57,4 @@ PlaneRaster united(const PlaneRaster& a, const PlaneRaster& b) {
     return both;
 }
 
-}  // namespace planemap::bench_map
+}  // namespace planemap::evaluation

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench_map/plane_raster.hpp"
+#include "evaluate/plane_raster.hpp"
 
 #include <gtest/gtest.h>
 
-namespace planemap::bench_map {
+namespace planemap::evaluation {
 namespace {
 
 Outline square(double x, double y, double side) {
@@ -15,7 +15,7 @@ TEST(PlaneRaster, HoldsWhatIsInsideTheOutline) {
     EXPECT_NEAR(raster.area(), 1, 0.05);
     EXPECT_LT((raster.centre() - Eigen::Vector2d(-0.2, 3.6)).norm(), PlaneRaster::kCell_m);
     for_each_cell(raster, [&](int x, int y) {
-        EXPECT_TRUE(contains(square(-0.7, 3.1, 1), cell_centre(x, y)));
+        EXPECT_TRUE(contains(square(-0.7, 3.1, 1), raster.cell_centre(x, y)));
         EXPECT_TRUE(raster.at(x, y));
     });
 }
@@ -37,4 +37,4 @@ TEST(PlaneRaster, NothingIsNothing) {
 }
 
 }  // namespace
-}  // namespace planemap::bench_map
+}  // namespace planemap::evaluation

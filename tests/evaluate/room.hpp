@@ -5,10 +5,11 @@
 #include <cmath>
 #include <vector>
 
-#include "bench_map/judge.hpp"
+#include "core/angle.hpp"
 #include "core/box.hpp"
+#include "evaluate/plane_judge.hpp"
 
-namespace planemap::bench_map {
+namespace planemap::evaluation {
 
 /// A rectangle in the world: x and y of its frame along the sides, z towards where it is seen from.
 struct Face {
@@ -45,7 +46,7 @@ inline MapPlane map_plane(int id, const Face& face) {
 inline std::vector<Face> room() {
     const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), y = Eigen::Vector3d::UnitY(),
                           z = Eigen::Vector3d::UnitZ();
-    const double angle = 56 * 3.14159265358979 / 180;
+    const double angle = radians(56);
     return {{"floor", {0, 0, 0}, z, x, 2, 1.5},
             {"west wall", {-2, 0, 1.2}, x, y, 1.5, 1.2},
             {"east wall", {2, 0, 1.2}, -x, y, 1.5, 1.2},
@@ -67,4 +68,4 @@ inline PlaneMap map_of(const std::vector<Face>& faces) {
     return map;
 }
 
-}  // namespace planemap::bench_map
+}  // namespace planemap::evaluation
