@@ -37,7 +37,7 @@ inline void write_decimated(const std::filesystem::path& from, const std::filesy
         return Json{{"width", camera.width}, {"height", camera.height}, {"fx", camera.fx},
                     {"fy", camera.fy},       {"cx", camera.cx},         {"cy", camera.cy}};
     };
-    const CameraInfo camera = camera_of_folder(from);
+    const CameraInfo camera = sensor::camera_of_folder(from);
     PinholeCamera coarse = camera.depth;
     coarse.width = static_cast<int>(coarse.width / factor);
     coarse.height = static_cast<int>(coarse.height / factor);
@@ -57,11 +57,11 @@ inline void write_decimated(const std::filesystem::path& from, const std::filesy
         if (std::filesystem::exists(from / name)) std::filesystem::copy_file(from / name, to / name);
     }
     std::filesystem::create_directory_symlink(std::filesystem::absolute(from / "rgb"), to / "rgb");
-    const Dataset dataset(from);
-    for (const ListedFrame& frame : dataset.frames()) {
-        const DepthImage depth =
-            decode_depth_png(read_file(from / frame.depth.file), camera.depth.width, camera.depth.height);
-        write_depth_png(to / frame.depth.file, decimated(depth, factor));
+    const sensor::Dataset dataset(from);
+    for (const sensor::ListedFrame& frame : dataset.frames()) {
+        const DepthImage depth = sensor::decode_depth_png(read_file(from / frame.depth.file),
+                                                          camera.depth.width, camera.depth.height);
+        sensor::write_depth_png(to / frame.depth.file, decimated(depth, factor));
     }
 }
 

@@ -46,13 +46,16 @@ class ShellTest : public testing::Test {
         bot_core::images_t images;
         images.utime = utime;
         images.image_types = {bot_core::images_t::LEFT, bot_core::images_t::DEPTH_MM};
-        images.images = {color_image_message(color, utime, ColorEncoding::kRaw, 90),
-                         depth_image_message(DepthImage(kWidth, kHeight, 2000), utime, DepthEncoding::kRaw)};
+        images.images = {messages::color_image_message(color, utime, messages::ColorEncoding::kRaw, 90),
+                         messages::depth_image_message(DepthImage(kWidth, kHeight, 2000), utime,
+                                                       messages::DepthEncoding::kRaw)};
         images.n_images = 2;
         return images;
     }
 
-    void publish_camera() { bus_.publish(channels::kCameraInfo, to_message(camera(), 0, 0)); }
+    void publish_camera() {
+        bus_.publish(messages::channels::kCameraInfo, messages::to_message(camera(), 0, 0));
+    }
 
     /// Bytes that no decoder may take, on a channel: empty, garbage, and a good message cut short and spoilt.
     template <typename T>
@@ -71,11 +74,12 @@ class ShellTest : public testing::Test {
     template <typename T>
     std::shared_ptr<std::vector<T>> collect(const char* channel) {
         auto all = std::make_shared<std::vector<T>>();
-        bus_.subscribe(channel, [all](const RawMessage& m) { all->push_back(decode<T>(m.bytes)); });
+        bus_.subscribe(
+            channel, [all](const messages::RawMessage& m) { all->push_back(messages::decode<T>(m.bytes)); });
         return all;
     }
 
-    Bus bus_{"memq://"};
+    messages::Bus bus_{"memq://"};
 };
 
 }  // namespace planemap::test

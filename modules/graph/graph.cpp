@@ -17,7 +17,7 @@
 #include "graph/successors.hpp"
 #include "graph/topology.hpp"
 
-namespace planemap {
+namespace planemap::graph {
 
 namespace {
 
@@ -328,4 +328,4 @@ std::size_t PoseGraph::memory_bytes() const {
     return impl_->memory_bytes();
 }
 
-}  // namespace planemap
+}  // namespace planemap::graph

@@ -9,7 +9,7 @@
 #include "graph/loop_closure.hpp"
 #include "graph/options.hpp"
 
-namespace planemap {
+namespace planemap::graph {
 
 namespace graph {
 struct OptimisationTask;
@@ -92,4 +92,4 @@ class PoseGraph {
     std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace planemap
+}  // namespace planemap::graph

@@ -10,7 +10,7 @@
 #include "messages/decode.hpp"
 #include "messages/keyframe_watch.hpp"
 
-namespace planemap {
+namespace planemap::graph {
 
 namespace {
 constexpr const char* kOutOfOrder = "keyframes with an id out of order";
@@ -19,15 +19,16 @@ constexpr const char* kFeatures =
 constexpr const char* kFailed = "optimisations in which the solver gave up";
 }  // namespace
 
-GraphShell::GraphShell(Bus& bus, const GraphOptions& options, Optimising optimising)
+GraphShell::GraphShell(messages::Bus& bus, const GraphOptions& options, Optimising optimising)
     : bus_(bus), optimising_(optimising), graph_(options) {
     // Keyframes are few and each counts: a long queue.
-    bus_.subscribe(channels::kKeyframe, status_.guard([this](const RawMessage& m) { on_keyframe(m); }), 256);
+    bus_.subscribe(messages::channels::kKeyframe,
+                   status_.guard([this](const messages::RawMessage& m) { on_keyframe(m); }), 256);
 }
 
-void GraphShell::on_keyframe(const RawMessage& message) {
-    const keyframe_t received = decode<keyframe_t>(message.bytes);
-    const Keyframe keyframe = from_message(received);
+void GraphShell::on_keyframe(const messages::RawMessage& message) {
+    const keyframe_t received = messages::decode<keyframe_t>(message.bytes);
+    const Keyframe keyframe = messages::from_message(received);
     if (!keyframe_guard_.admits(received.session, received.seq, received.utime, message.bytes)) return;
     if (odometry_started_again_ || !graph_.expects(keyframe.id)) {
         refuse(keyframe.id);
@@ -35,15 +36,15 @@ void GraphShell::on_keyframe(const RawMessage& message) {
         if (graph_.trajectory().keyframes.size() > 1) return;
     }
     try {
-        const ModuleStatus::Work work(status_);
+        const messages::ModuleStatus::Work work(status_);
         if (optimising_ == Optimising::kInHandler)
             graph_.add(keyframe);
         else
             graph_.insert(keyframe);
     } catch (const std::invalid_argument& error) {
-        throw MessageError(error.what());
+        throw messages::MessageError(error.what());
     }
-    remark_new_part(status_, keyframe.id, keyframe.previous_id, keyframe.utime);
+    messages::remark_new_part(status_, keyframe.id, keyframe.previous_id, keyframe.utime);
     publish();
     start_if_due();
 }
@@ -94,7 +95,7 @@ void GraphShell::finish() {
     }
     if (graph_.trajectory().keyframes.empty()) return;
     {
-        const ModuleStatus::Work work(status_);
+        const messages::ModuleStatus::Work work(status_);
         graph_.finish();
     }
     publish();
@@ -110,16 +111,17 @@ void GraphShell::tell_losses() {
 
 /// For those who come late while the camera stands still: the same message again, which is no work.
 void GraphShell::republish_if_due() {
-    if (published_us_ == 0 || now_us() - published_us_ < kRepeat_us) return;
-    bus_.publish(channels::kTrajectory, to_message(graph_.trajectory(), seq_ - 1, bus_.session()));
-    published_us_ = now_us();
+    if (published_us_ == 0 || messages::now_us() - published_us_ < messages::kRepeat_us) return;
+    bus_.publish(messages::channels::kTrajectory,
+                 messages::to_message(graph_.trajectory(), seq_ - 1, bus_.session()));
+    published_us_ = messages::now_us();
 }
 
 void GraphShell::publish() {
     tell_losses();
     const KeyframeTrajectory& trajectory = graph_.trajectory();
-    bus_.publish(channels::kTrajectory, to_message(trajectory, seq_++, bus_.session()));
-    published_us_ = now_us();
+    bus_.publish(messages::channels::kTrajectory, messages::to_message(trajectory, seq_++, bus_.session()));
+    published_us_ = messages::now_us();
     status_.published();
     std::string text = std::to_string(trajectory.keyframes.size()) + " keyframes, " +
                        std::to_string(trajectory.loop_closures) + " loop closures";
@@ -128,4 +130,4 @@ void GraphShell::publish() {
     status_.set_text(text);
 }
 
-}  // namespace planemap
+}  // namespace planemap::graph

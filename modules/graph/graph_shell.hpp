@@ -9,7 +9,7 @@
 #include "messages/process.hpp"
 #include "messages/stream_guard.hpp"
 
-namespace planemap {
+namespace planemap::graph {
 
 /// Where the graph is optimised.
 enum class Optimising {
@@ -18,11 +18,12 @@ enum class Optimising {
 };
 
 /// PLANEMAP_KEYFRAME to PLANEMAP_TRAJECTORY.
-class GraphShell : public Shell {
+class GraphShell : public messages::Shell {
   public:
-    GraphShell(Bus& bus, const GraphOptions& options, Optimising optimising = Optimising::kInHandler);
+    GraphShell(messages::Bus& bus, const GraphOptions& options,
+               Optimising optimising = Optimising::kInHandler);
 
-    ModuleStatus& status() override { return status_; }
+    messages::ModuleStatus& status() override { return status_; }
     /// Publishes what the background has finished, gives it what is due, and repeats the trajectory when a
     /// second has passed without one.
     int poll() override;
@@ -31,20 +32,20 @@ class GraphShell : public Shell {
     const PoseGraph& graph() const { return graph_; }
 
   private:
-    void on_keyframe(const RawMessage& message);
+    void on_keyframe(const messages::RawMessage& message);
     void refuse(int id);
     void start_if_due();
     void publish();
     void tell_losses();
     void republish_if_due();
 
-    Bus& bus_;
+    messages::Bus& bus_;
     Optimising optimising_;
     PoseGraph graph_;
     std::optional<GraphOptimisation> running_;  ///< owned by the background until done_ is ready
     std::future<void> done_;
-    ModuleStatus status_{"graph"};
-    StreamGuard keyframe_guard_{channels::kKeyframe, "keyframes", status_};
+    messages::ModuleStatus status_{"graph"};
+    messages::StreamGuard keyframe_guard_{messages::channels::kKeyframe, "keyframes", status_};
     GraphCounts told_;  ///< to the status
     std::int32_t seq_ = 0;
     std::int64_t published_us_ = 0;    ///< wall clock of the last trajectory; 0: none yet
@@ -53,4 +54,4 @@ class GraphShell : public Shell {
     bool odometry_started_again_ = false;
 };
 
-}  // namespace planemap
+}  // namespace planemap::graph

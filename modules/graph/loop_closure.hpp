@@ -5,7 +5,7 @@
 
 #include "core/pose.hpp"
 
-namespace planemap {
+namespace planemap::graph {
 
 /// Two keyframes that saw the same place.
 struct LoopClosure {
@@ -19,4 +19,4 @@ struct LoopClosure {
         1;  ///< in the last optimisation, 0 to 1: near 0 when the rest of the graph contradicts it
 };
 
-}  // namespace planemap
+}  // namespace planemap::graph

@@ -2,10 +2,11 @@
 #include "graph/graph_shell.hpp"
 
 int main(int argc, char** argv) {
-    planemap::Process process("graph", "Keyframes to loop closures and an optimised trajectory.");
-    planemap::GraphOptions options;
+    planemap::messages::Process process("graph", "Keyframes to loop closures and an optimised trajectory.");
+    planemap::graph::GraphOptions options;
     process.flags().add(options_of(options));
-    return process.run(argc, argv, [&](planemap::Bus& bus) {
-        return std::make_unique<planemap::GraphShell>(bus, options, planemap::Optimising::kInBackground);
+    return process.run(argc, argv, [&](planemap::messages::Bus& bus) {
+        return std::make_unique<planemap::graph::GraphShell>(bus, options,
+                                                             planemap::graph::Optimising::kInBackground);
     });
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "graph/options.hpp"
 
-namespace planemap {
+namespace planemap::graph {
 
 namespace {
 
@@ -92,4 +92,4 @@ void GraphOptions::validate() const {
     check_options("graph options", *this);
 }
 
-}  // namespace planemap
+}  // namespace planemap::graph

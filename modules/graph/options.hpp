@@ -3,7 +3,7 @@
 
 #include "core/option_list.hpp"
 
-namespace planemap {
+namespace planemap::graph {
 
 /// Options of PoseGraph; options_of() says what each is.
 struct GraphOptions {
@@ -68,4 +68,4 @@ struct GraphOptions {
 /// Refers to `options`, which must outlive it.
 OptionList options_of(GraphOptions& options);
 
-}  // namespace planemap
+}  // namespace planemap::graph

@@ -2,7 +2,8 @@
 #include "map/map_shell.hpp"
 
 int main(int argc, char** argv) {
-    planemap::Process process("map", "Keyframes' planar regions and the trajectory to the plane map.");
+    planemap::messages::Process process("map",
+                                        "Keyframes' planar regions and the trajectory to the plane map.");
     planemap::map::MapShellOptions options;
     process.flags().add("o,output", options.output,
                         "Folder for plane_map.lcmlog; without it nothing is written");
@@ -11,7 +12,7 @@ int main(int argc, char** argv) {
         "plane_map.lcmlog to start from, in the world frame of this run: its planes keep their ids "
         "and grow on");
     process.flags().add(options_of(options.map));
-    return process.run(argc, argv, [&](planemap::Bus& bus) {
+    return process.run(argc, argv, [&](planemap::messages::Bus& bus) {
         return std::make_unique<planemap::map::MapShell>(bus, options);
     });
 }

@@ -12,13 +12,13 @@
 namespace planemap::map {
 
 std::string plane_map_log(const PlaneMap& map) {
-    const plane_map_t message = to_message(map, 0);
-    LogEvent event;
+    const plane_map_t message = messages::to_message(map, 0);
+    messages::LogEvent event;
     event.utime = map.utime;
-    event.channel = channels::kMap;
+    event.channel = messages::channels::kMap;
     event.bytes.resize(static_cast<std::size_t>(message.getEncodedSize()));
     message.encode(event.bytes.data(), 0, message.getEncodedSize());
-    return encode_event(event);
+    return messages::encode_event(event);
 }
 
 void write_plane_map(const std::filesystem::path& file, const PlaneMap& map) {
@@ -26,11 +26,11 @@ void write_plane_map(const std::filesystem::path& file, const PlaneMap& map) {
 }
 
 PlaneMap read_plane_map(const std::filesystem::path& file) {
-    LogReader log(file);
+    messages::LogReader log(file);
     std::vector<std::uint8_t> newest;
     bool found = false;
-    for (LogEvent event; log.next(event);) {
-        if (event.channel != channels::kMap) continue;
+    for (messages::LogEvent event; log.next(event);) {
+        if (event.channel != messages::channels::kMap) continue;
         newest = std::move(event.bytes);
         found = true;
     }
@@ -39,10 +39,11 @@ PlaneMap read_plane_map(const std::filesystem::path& file) {
         throw std::runtime_error(file.string() + ": " + std::to_string(log.bytes_skipped()) +
                                  " bytes of it are no LCM log");
     if (!found)
-        throw std::runtime_error(file.string() + ": holds no map (nothing on " + channels::kMap + ")");
+        throw std::runtime_error(file.string() + ": holds no map (nothing on " + messages::channels::kMap +
+                                 ")");
     try {
-        return from_message(decode<plane_map_t>(newest));
-    } catch (const MessageError& error) {
+        return messages::from_message(messages::decode<plane_map_t>(newest));
+    } catch (const messages::MessageError& error) {
         throw std::runtime_error(file.string() + ": its map is corrupt: " + error.what());
     }
 }

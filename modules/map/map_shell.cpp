@@ -35,7 +35,7 @@ void make_folder(const std::filesystem::path& folder) {
 }
 }  // namespace
 
-MapShell::MapShell(Bus& bus, const MapShellOptions& options)
+MapShell::MapShell(messages::Bus& bus, const MapShellOptions& options)
     : bus_(bus),
       output_(options.output),
       mapper_(options.map),
@@ -47,14 +47,15 @@ MapShell::MapShell(Bus& bus, const MapShellOptions& options)
     status_.lost("fine edges of planes, since the map to start from is very large",
                  static_cast<std::int64_t>(mapper_.coarsened()));
     if (!output_.empty()) try_output();
-    bus_.subscribe(channels::kKeyframe, status_.guard([this](const RawMessage& m) { on_keyframe(m); }), 256);
-    bus_.subscribe(channels::kTrajectory, status_.guard([this](const RawMessage& m) { on_trajectory(m); }),
-                   16);
+    bus_.subscribe(messages::channels::kKeyframe,
+                   status_.guard([this](const messages::RawMessage& m) { on_keyframe(m); }), 256);
+    bus_.subscribe(messages::channels::kTrajectory,
+                   status_.guard([this](const messages::RawMessage& m) { on_trajectory(m); }), 16);
 }
 
-void MapShell::on_keyframe(const RawMessage& message) {
-    const keyframe_t received = decode<keyframe_t>(message.bytes);
-    const Keyframe keyframe = from_message(received);
+void MapShell::on_keyframe(const messages::RawMessage& message) {
+    const keyframe_t received = messages::decode<keyframe_t>(message.bytes);
+    const Keyframe keyframe = messages::from_message(received);
     if (!keyframe_guard_.admits(received.session, received.seq, received.utime, message.bytes)) return;
     watch_.came(keyframe.id, keyframe.previous_id, keyframe.utime);
     mapper_.add(keyframe);
@@ -62,15 +63,15 @@ void MapShell::on_keyframe(const RawMessage& message) {
     tell();
 }
 
-void MapShell::on_trajectory(const RawMessage& message) {
-    const trajectory_t received = decode<trajectory_t>(message.bytes);
-    const KeyframeTrajectory trajectory = from_message(received);
+void MapShell::on_trajectory(const messages::RawMessage& message) {
+    const trajectory_t received = messages::decode<trajectory_t>(message.bytes);
+    const KeyframeTrajectory trajectory = messages::from_message(received);
     if (!trajectory_guard_.admits(received.session, received.seq, std::nullopt, message.bytes)) return;
     {
-        const ModuleStatus::Work work(status_);
+        const messages::ModuleStatus::Work work(status_);
         mapper_.update(trajectory);
     }
-    watch_.named(trajectory, now_us());
+    watch_.named(trajectory, messages::now_us());
     tell_losses();
     publish();
 }
@@ -96,8 +97,8 @@ void MapShell::tell_losses() {
 }
 
 void MapShell::publish() {
-    bus_.publish(channels::kMap, to_message(mapper_.map(), seq_++));
-    published_us_ = now_us();
+    bus_.publish(messages::channels::kMap, messages::to_message(mapper_.map(), seq_++));
+    published_us_ = messages::now_us();
     status_.published();
     unwritten_ = true;
     tell();
@@ -114,14 +115,14 @@ void MapShell::tell() {
 }
 
 int MapShell::poll() {
-    watch_.tell(now_us());
-    if (published_us_ != 0 && now_us() - published_us_ >= kRepeat_us) {
+    watch_.tell(messages::now_us());
+    if (published_us_ != 0 && messages::now_us() - published_us_ >= messages::kRepeat_us) {
         // For those who come late while the camera stands still: the same message again, which is no work.
-        bus_.publish(channels::kMap, to_message(mapper_.map(), seq_ - 1));
-        published_us_ = now_us();
+        bus_.publish(messages::channels::kMap, messages::to_message(mapper_.map(), seq_ - 1));
+        published_us_ = messages::now_us();
     }
     const std::int64_t period = write_error_.empty() ? kWritePeriodUs : kRetryPeriodUs;
-    if (unwritten_ && !output_.empty() && now_us() - last_write_us_ >= period) try_write();
+    if (unwritten_ && !output_.empty() && messages::now_us() - last_write_us_ >= period) try_write();
     return 100;
 }
 
@@ -170,14 +171,14 @@ void MapShell::try_write() {
 void MapShell::write_failed(const std::string& why) {
     if (write_error_.empty()) spdlog::warn("{}; the map is kept, trying every second", why);
     write_error_ = why;
-    last_write_us_ = now_us();
+    last_write_us_ = messages::now_us();
     tell();
 }
 
 void MapShell::write() {
     make_folder(output_);  // somebody may have removed it
     if (make_way()) write_plane_map(output_ / kFile, mapper_.map());
-    last_write_us_ = now_us();
+    last_write_us_ = messages::now_us();
     unwritten_ = false;
 }
 

@@ -26,11 +26,11 @@ struct MapShellOptions {
 
 /// PLANEMAP_KEYFRAME and PLANEMAP_TRAJECTORY to PLANEMAP_MAP. Throws std::runtime_error naming the file for a
 /// map to start from that cannot be read, and for an output folder that cannot be one.
-class MapShell : public Shell {
+class MapShell : public messages::Shell {
   public:
-    MapShell(Bus& bus, const MapShellOptions& options);
+    MapShell(messages::Bus& bus, const MapShellOptions& options);
 
-    ModuleStatus& status() override { return status_; }
+    messages::ModuleStatus& status() override { return status_; }
     /// Writes the map every few seconds, and repeats it on the bus when a second has passed without one.
     int poll() override;
     void finish() override;
@@ -38,8 +38,8 @@ class MapShell : public Shell {
     const PlaneMapper& mapper() const { return mapper_; }
 
   private:
-    void on_keyframe(const RawMessage& message);
-    void on_trajectory(const RawMessage& message);
+    void on_keyframe(const messages::RawMessage& message);
+    void on_trajectory(const messages::RawMessage& message);
     void tell_losses();
     void publish();
     void tell();
@@ -49,13 +49,13 @@ class MapShell : public Shell {
     bool make_way();
     void write_failed(const std::string& why);
 
-    Bus& bus_;
+    messages::Bus& bus_;
     std::filesystem::path output_;
     PlaneMapper mapper_;
-    ModuleStatus status_{"map"};
-    StreamGuard keyframe_guard_{channels::kKeyframe, "keyframes", status_};
-    StreamGuard trajectory_guard_{channels::kTrajectory, "trajectories", status_, false};
-    KeyframeWatch watch_;
+    messages::ModuleStatus status_{"map"};
+    messages::StreamGuard keyframe_guard_{messages::channels::kKeyframe, "keyframes", status_};
+    messages::StreamGuard trajectory_guard_{messages::channels::kTrajectory, "trajectories", status_, false};
+    messages::KeyframeWatch watch_;
     MapLosses told_;  ///< what the status knows
     std::int32_t seq_ = 0;
     std::int64_t published_us_ = 0;  ///< wall clock of the last map; 0: none yet

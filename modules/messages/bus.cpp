@@ -21,7 +21,7 @@
 
 #include "messages/interrupt.hpp"
 
-namespace planemap {
+namespace planemap::messages {
 
 namespace {
 
@@ -324,4 +324,4 @@ void Bus::drain() {
     }
 }
 
-}  // namespace planemap
+}  // namespace planemap::messages

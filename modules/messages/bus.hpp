@@ -13,7 +13,7 @@
 #include "messages/endpoint.hpp"
 #include "messages/error.hpp"
 
-namespace planemap {
+namespace planemap::messages {
 
 /// One message as it came off the bus; the bytes live as long as the handler runs.
 struct RawMessage {
@@ -122,4 +122,4 @@ std::int64_t now_us();
 /// is well.
 std::string receive_buffer_advice(const std::string& url);
 
-}  // namespace planemap
+}  // namespace planemap::messages

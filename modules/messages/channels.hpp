@@ -2,7 +2,7 @@
 // The channels of the bus, upper case as the LCM world writes them.
 #pragma once
 
-namespace planemap::channels {
+namespace planemap::messages::channels {
 
 inline constexpr const char* kFrame = "OPENNI_FRAME";                 ///< bot_core.images_t
 inline constexpr const char* kCameraInfo = "PLANEMAP_CAMERA_INFO";    ///< planemap.camera_info_t
@@ -16,4 +16,4 @@ inline constexpr const char* kOctomapSize = "PLANEMAP_OCTOMAP_SIZE";  ///< plane
 inline constexpr const char* kStatusPrefix =
     "PLANEMAP_STATUS_";  ///< planemap.module_status_t, module in upper case
 
-}  // namespace planemap::channels
+}  // namespace planemap::messages::channels

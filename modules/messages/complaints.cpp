@@ -5,7 +5,7 @@
 
 #include <cctype>
 
-namespace planemap {
+namespace planemap::messages {
 
 namespace {
 
@@ -56,4 +56,4 @@ void Complaints::log_totals() const {
     }
 }
 
-}  // namespace planemap
+}  // namespace planemap::messages

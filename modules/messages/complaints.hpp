@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace planemap {
+namespace planemap::messages {
 
 /// What goes wrong again and again. The first of a kind is logged at once, as a warning, then the 10th,
 /// 100th, 1000th and so on with their count; how many there were is told at the end. Lines that differ in
@@ -37,4 +37,4 @@ class Complaints {
     std::int64_t count_ = 0;
 };
 
-}  // namespace planemap
+}  // namespace planemap::messages

@@ -14,7 +14,7 @@
 #include "core/validation.hpp"
 #include "messages/image_codec.hpp"
 
-namespace planemap {
+namespace planemap::messages {
 
 namespace {
 
@@ -601,4 +601,4 @@ bot_core::image_t jpeg_image_message(std::span<const std::uint8_t> jpeg, int wid
     return message;
 }
 
-}  // namespace planemap
+}  // namespace planemap::messages

@@ -21,7 +21,7 @@
 #include "core/region.hpp"
 #include "messages/error.hpp"
 
-namespace planemap {
+namespace planemap::messages {
 
 /// The stamp of a message; throws MessageError naming the field if it is beyond kFarthestUtime.
 std::int64_t checked_utime(std::int64_t utime, const char* field);
@@ -65,4 +65,4 @@ bot_core::image_t color_image_message(const RgbImage& color, std::int64_t utime,
 bot_core::image_t jpeg_image_message(std::span<const std::uint8_t> jpeg, int width, int height,
                                      std::int64_t utime);
 
-}  // namespace planemap
+}  // namespace planemap::messages

@@ -16,7 +16,7 @@
 #include <planemap/trajectory_t.hpp>
 #include <string>
 
-namespace planemap {
+namespace planemap::messages {
 
 namespace {
 
@@ -205,4 +205,4 @@ template plane_map_t decode(std::span<const std::uint8_t>);
 template map_size_t decode(std::span<const std::uint8_t>);
 template module_status_t decode(std::span<const std::uint8_t>);
 
-}  // namespace planemap
+}  // namespace planemap::messages

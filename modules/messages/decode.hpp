@@ -25,6 +25,9 @@ class trajectory_t;
 class plane_map_t;
 class map_size_t;
 class module_status_t;
+}  // namespace planemap
+
+namespace planemap::messages {
 
 /// Decodes one message of the type. Throws MessageError when the fingerprint is another type's, when a length
 /// is negative or larger than the bytes that are there, or when bytes are missing or left over. Never
@@ -32,4 +35,4 @@ class module_status_t;
 template <typename T>
 T decode(std::span<const std::uint8_t> bytes);
 
-}  // namespace planemap
+}  // namespace planemap::messages

@@ -21,7 +21,7 @@
 
 #include "messages/file_bytes.hpp"
 
-namespace planemap {
+namespace planemap::messages {
 
 namespace {
 
@@ -261,4 +261,4 @@ std::string Endpoint::url_for_liblcm() const {
            (parameters_.empty() ? "" : "?" + parameters_);
 }
 
-}  // namespace planemap
+}  // namespace planemap::messages

@@ -10,7 +10,7 @@
 #include <memory>
 #include <string>
 
-namespace planemap {
+namespace planemap::messages {
 
 class Endpoint {
   public:
@@ -45,4 +45,4 @@ class Endpoint {
     std::shared_ptr<Lookup> lookup_;  ///< shared with the thread that asks, which nothing can interrupt
 };
 
-}  // namespace planemap
+}  // namespace planemap::messages

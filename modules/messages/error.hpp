@@ -3,7 +3,7 @@
 
 #include <stdexcept>
 
-namespace planemap {
+namespace planemap::messages {
 
 /// A message or a compressed image that cannot be used: what() says the type or channel, the field and the
 /// reason. The sender's fault, never the process's: count it, say it once per burst, drop it, go on.
@@ -12,4 +12,4 @@ class MessageError : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-}  // namespace planemap
+}  // namespace planemap::messages

@@ -10,7 +10,7 @@
 #include <cstring>
 #include <stdexcept>
 
-namespace planemap {
+namespace planemap::messages {
 
 namespace {
 
@@ -113,4 +113,4 @@ std::uint64_t FileBytes::zeros_from(std::uint64_t from) {
     return from;
 }
 
-}  // namespace planemap
+}  // namespace planemap::messages

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-namespace planemap {
+namespace planemap::messages {
 
 /// A regular file that is read at any place. Keeps a window of it, so that going forward through small pieces
 /// is cheap, and a look far ahead costs no more than its bytes. Everything that fails throws
@@ -47,4 +47,4 @@ class FileBytes {
     std::vector<std::uint8_t> window_;
 };
 
-}  // namespace planemap
+}  // namespace planemap::messages

@@ -16,7 +16,7 @@
 #include "core/standard_output.hpp"
 #include "core/version.hpp"
 
-namespace planemap {
+namespace planemap::messages {
 
 namespace {
 
@@ -449,4 +449,4 @@ std::vector<FlagValue> Flags::values() const {
     return values;
 }
 
-}  // namespace planemap
+}  // namespace planemap::messages

@@ -13,7 +13,7 @@
 
 #include "core/option_list.hpp"
 
-namespace planemap {
+namespace planemap::messages {
 
 /// An option by its long name without dashes (of an argument without a name: what --help calls it), and its
 /// value; std::monostate where none was given and there is no default.
@@ -69,4 +69,4 @@ class Flags {
     std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace planemap
+}  // namespace planemap::messages

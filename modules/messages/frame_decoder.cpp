@@ -15,7 +15,7 @@
 #include "messages/decode.hpp"
 #include "messages/image_codec.hpp"
 
-namespace planemap {
+namespace planemap::messages {
 
 namespace {
 
@@ -281,7 +281,7 @@ void FrameDecoder::subscribe(ModuleStatus& status, int capacity, FrameHandler ha
 void FrameDecoder::on_camera(const RawMessage& message) {
     CameraInfo described;
     try {
-        described = from_message(planemap::decode<camera_info_t>(message.bytes));
+        described = from_message(planemap::messages::decode<camera_info_t>(message.bytes));
         camera_refused_.clear();
     } catch (const MessageError& error) {
         camera_refused_ = error.what();
@@ -425,4 +425,4 @@ void FrameDecoder::deliver(const std::shared_ptr<const Frame>& frame) {
     }
 }
 
-}  // namespace planemap
+}  // namespace planemap::messages

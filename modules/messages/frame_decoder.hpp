@@ -18,7 +18,7 @@
 #include "messages/module_status.hpp"
 #include "messages/sender_guard.hpp"
 
-namespace planemap {
+namespace planemap::messages {
 
 /// One RGB-D frame off the bus. Images are decoded when first asked for, once, and kept; whoever shares the
 /// frame shares them. All accessors throw MessageError for images that are corrupt or not of the camera's
@@ -120,4 +120,4 @@ void set_seq(bot_core::image_t& image, std::uint32_t seq);
 /// another one (see SenderGuard).
 void set_sender(bot_core::image_t& image, std::uint64_t sender);
 
-}  // namespace planemap
+}  // namespace planemap::messages

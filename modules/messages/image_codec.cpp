@@ -10,7 +10,7 @@
 #include <new>
 #include <string>
 
-namespace planemap {
+namespace planemap::messages {
 
 static_assert(std::endian::native == std::endian::little,
               "depth travels as little-endian rows and is copied as it is");
@@ -120,4 +120,4 @@ std::vector<std::uint8_t> encode_zipped_depth(const DepthImage& depth, int level
     return zipped;
 }
 
-}  // namespace planemap
+}  // namespace planemap::messages

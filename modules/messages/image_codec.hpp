@@ -11,7 +11,7 @@
 #include "core/image.hpp"
 #include "messages/error.hpp"
 
-namespace planemap {
+namespace planemap::messages {
 
 /// Luma of a JPEG, which costs a fraction of its colours.
 GrayImage decode_jpeg_luma(std::span<const std::uint8_t> jpeg, int width, int height);
@@ -25,4 +25,4 @@ GrayImage luma(const RgbImage& image);
 DepthImage decode_zipped_depth(std::span<const std::uint8_t> zipped, int width, int height);
 std::vector<std::uint8_t> encode_zipped_depth(const DepthImage& depth, int level = 1);
 
-}  // namespace planemap
+}  // namespace planemap::messages

@@ -6,7 +6,7 @@
 
 #include "core/stamp.hpp"
 
-namespace planemap {
+namespace planemap::messages {
 
 namespace {
 constexpr std::int64_t kOnItsWay_us = 1000000;
@@ -49,4 +49,4 @@ void KeyframeWatch::tell(std::int64_t now_us) {
                                     " keyframes of the trajectory were never received: " + consequence_);
 }
 
-}  // namespace planemap
+}  // namespace planemap::messages

@@ -9,7 +9,7 @@
 #include "core/keyframe.hpp"
 #include "messages/module_status.hpp"
 
-namespace planemap {
+namespace planemap::messages {
 
 /// Remarks on the status that a keyframe after the first has no edge from those before it, as after a loss of
 /// tracking or when the sensor started again elsewhere.
@@ -42,4 +42,4 @@ class KeyframeWatch {
     std::size_t told_ = 0;
 };
 
-}  // namespace planemap
+}  // namespace planemap::messages

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <stdexcept>
 
-namespace planemap {
+namespace planemap::messages {
 
 namespace {
 
@@ -205,4 +205,4 @@ void LogWriter::close() {
     if (file != nullptr && std::fclose(file) != 0) fail(path_, "write", errno);
 }
 
-}  // namespace planemap
+}  // namespace planemap::messages

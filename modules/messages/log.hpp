@@ -13,7 +13,7 @@
 
 #include "messages/log_records.hpp"
 
-namespace planemap {
+namespace planemap::messages {
 
 struct LogEvent {
     std::int64_t number = 0;  ///< event number in the log
@@ -102,4 +102,4 @@ class LogWriter {
     std::unique_ptr<std::FILE, Close> file_;
 };
 
-}  // namespace planemap
+}  // namespace planemap::messages

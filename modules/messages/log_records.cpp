@@ -6,7 +6,7 @@
 #include <bit>
 #include <cstring>
 
-namespace planemap {
+namespace planemap::messages {
 
 namespace {
 
@@ -188,4 +188,4 @@ std::optional<LogRecord> LogRecords::resume(std::uint64_t gap, std::uint64_t fro
     return unsure && before_stray_bytes(*unsure, size) ? unsure : std::nullopt;
 }
 
-}  // namespace planemap
+}  // namespace planemap::messages

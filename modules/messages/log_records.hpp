@@ -11,7 +11,7 @@
 
 #include "messages/file_bytes.hpp"
 
-namespace planemap {
+namespace planemap::messages {
 
 /// A record's header, with lengths that may be right: the channel holds no NUL, the end lies in the file.
 struct LogRecord {
@@ -69,4 +69,4 @@ class LogRecords {
     FileBytes file_;
 };
 
-}  // namespace planemap
+}  // namespace planemap::messages

@@ -10,7 +10,7 @@
 
 #include "messages/channels.hpp"
 
-namespace planemap {
+namespace planemap::messages {
 
 namespace {
 constexpr std::int64_t kPeriodUs = 1000000;
@@ -169,4 +169,4 @@ std::string ModuleStatus::line() const {
     return text.empty() ? line : std::string(line) + "; " + text;
 }
 
-}  // namespace planemap
+}  // namespace planemap::messages

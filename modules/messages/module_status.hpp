@@ -13,7 +13,7 @@
 #include "messages/bus.hpp"
 #include "messages/seq_counter.hpp"
 
-namespace planemap {
+namespace planemap::messages {
 
 /// CPU time of the calling thread since it began, milliseconds.
 double thread_cpu_ms();
@@ -107,4 +107,4 @@ class ModuleStatus {
     std::int32_t seq_ = 0;
 };
 
-}  // namespace planemap
+}  // namespace planemap::messages

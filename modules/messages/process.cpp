@@ -14,7 +14,7 @@
 
 #include "messages/interrupt.hpp"
 
-namespace planemap {
+namespace planemap::messages {
 
 namespace {
 
@@ -151,4 +151,4 @@ int Process::run(int argc, char** argv, const std::function<std::unique_ptr<Shel
     });
 }
 
-}  // namespace planemap
+}  // namespace planemap::messages

@@ -10,7 +10,7 @@
 #include "messages/flags.hpp"
 #include "messages/module_status.hpp"
 
-namespace planemap {
+namespace planemap::messages {
 
 /// A result of which a second passed without a new one is sent again, so that those who come late have it.
 inline constexpr std::int64_t kRepeat_us = 1000000;
@@ -64,4 +64,4 @@ class Process {
     bool verbose_ = false;
 };
 
-}  // namespace planemap
+}  // namespace planemap::messages

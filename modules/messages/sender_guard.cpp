@@ -7,7 +7,7 @@
 
 #include "core/stamp.hpp"
 
-namespace planemap {
+namespace planemap::messages {
 
 namespace {
 
@@ -201,4 +201,4 @@ Verdict SenderGuard::judge_aside(const Stream& stream, bool foreign) {
     return Verdict::kWentBack;
 }
 
-}  // namespace planemap
+}  // namespace planemap::messages

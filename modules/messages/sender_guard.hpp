@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace planemap {
+namespace planemap::messages {
 
 /// Follows one sender on a channel: the first. Another one is named and ignored until the first has been
 /// silent for kSilence_us of the other's time stamps. Time comes from the messages, so that a replay repeats.
@@ -83,4 +83,4 @@ class SenderGuard {
 /// CRC-32 of a message, for SenderGuard::Message::checksum.
 std::uint32_t checksum_of(std::span<const std::uint8_t> bytes);
 
-}  // namespace planemap
+}  // namespace planemap::messages

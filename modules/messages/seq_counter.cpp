@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "messages/seq_counter.hpp"
 
-namespace planemap {
+namespace planemap::messages {
 
 namespace {
 constexpr std::int64_t kWindow = 64;  // numbers that are remembered one by one
@@ -43,4 +43,4 @@ void SeqCounter::add(std::uint32_t seq) {
     }
 }
 
-}  // namespace planemap
+}  // namespace planemap::messages

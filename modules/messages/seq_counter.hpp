@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <optional>
 
-namespace planemap {
+namespace planemap::messages {
 
 /// Counts what is missing in a stream of consecutive numbers. A late arrival takes its gap back, one that
 /// comes twice changes nothing. A number far from the last is believed once the next one bears it out: ahead,
@@ -24,4 +24,4 @@ class SeqCounter {
     std::int64_t missed_ = 0, restarts_ = 0;
 };
 
-}  // namespace planemap
+}  // namespace planemap::messages

@@ -3,7 +3,7 @@
 
 #include <spdlog/spdlog.h>
 
-namespace planemap {
+namespace planemap::messages {
 
 bool StreamGuard::admits(std::int64_t session, std::int32_t seq, std::optional<std::int64_t> utime,
                          std::span<const std::uint8_t> bytes) {
@@ -27,4 +27,4 @@ bool StreamGuard::admits(std::int64_t session, std::int32_t seq, std::optional<s
     return false;
 }
 
-}  // namespace planemap
+}  // namespace planemap::messages

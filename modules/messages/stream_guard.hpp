@@ -9,7 +9,7 @@
 #include "messages/module_status.hpp"
 #include "messages/sender_guard.hpp"
 
-namespace planemap {
+namespace planemap::messages {
 
 /// A channel of results that a module lives on: one sender's are admitted, what another sender or an earlier
 /// run says is counted and named (see SenderGuard).
@@ -34,4 +34,4 @@ class StreamGuard {
     bool main_stream_;
 };
 
-}  // namespace planemap
+}  // namespace planemap::messages

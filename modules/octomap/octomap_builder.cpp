@@ -7,11 +7,11 @@
 
 #include "core/angle.hpp"
 
-namespace planemap {
+namespace planemap::octomap {
 
 OctomapBuilder::OctomapBuilder(OctomapOptions options) : options_(options) {
     options_.validate();
-    tree_ = std::make_unique<octomap::OcTree>(options_.resolution_m);
+    tree_ = std::make_unique<::octomap::OcTree>(options_.resolution_m);
 }
 
 bool OctomapBuilder::add(int keyframe_id, const DepthImage& depth, const CameraInfo& camera,
@@ -171,9 +171,9 @@ void OctomapBuilder::begin_tree(const std::stop_token& stop) {
     if (!rebuild_->everything) {
         rebuild_->tree = composed(*tree_, base_.get(), rebuild_->dirty, stop);
     } else if (base_) {
-        rebuild_->tree = std::make_unique<octomap::OcTree>(*base_);
+        rebuild_->tree = std::make_unique<::octomap::OcTree>(*base_);
     } else {
-        rebuild_->tree = std::make_unique<octomap::OcTree>(options_.resolution_m);
+        rebuild_->tree = std::make_unique<::octomap::OcTree>(options_.resolution_m);
     }
 }
 
@@ -213,7 +213,7 @@ void OctomapBuilder::end_rebuild() {
 void OctomapBuilder::freeze_oldest(const std::stop_token& stop) {
     const auto oldest = keyframes_.begin();
     const Keyframe& keyframe = oldest->second;
-    if (!base_) base_ = std::make_unique<octomap::OcTree>(options_.resolution_m);
+    if (!base_) base_ = std::make_unique<::octomap::OcTree>(options_.resolution_m);
     trace(*keyframe.scan, keyframe.world_from_camera, stop);
     inserter_.apply(*base_, nullptr, stop);
     if (!keyframe.inside || keyframe.misplaced) {
@@ -248,7 +248,7 @@ std::vector<Eigen::Vector3d> OctomapBuilder::occupied_voxels() const {
 std::size_t OctomapBuilder::voxel_cloud_size(double voxel_m) const {
     VoxelSet voxels;
     for (const auto& [id, keyframe] : keyframes_) {
-        for (const octomap::point3d& p :
+        for (const ::octomap::point3d& p :
              keyframe.scan->points(keyframe.world_from_camera, options_.subsample)) {
             const Eigen::Array3d cell = (Eigen::Array3d(p.x(), p.y(), p.z()) / voxel_m).floor();
             if (!((cell.abs() < VoxelSet::kMaxCoordinate).all())) continue;
@@ -273,4 +273,4 @@ std::size_t OctomapBuilder::working_bytes() const {
     return bytes;
 }
 
-}  // namespace planemap
+}  // namespace planemap::octomap

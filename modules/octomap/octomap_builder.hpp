@@ -21,7 +21,7 @@
 #include "octomap/stored_scan.hpp"
 #include "octomap/tree_blocks.hpp"
 
-namespace planemap {
+namespace planemap::octomap {
 
 /// Options of OctomapBuilder; options_of() says what each is.
 struct OctomapOptions {
@@ -85,7 +85,7 @@ class OctomapBuilder {
     std::size_t keyframes_in_tree() const;
 
     /// The tree as of the last flush() or tidy().
-    const octomap::OcTree& tree() const { return *tree_; }
+    const ::octomap::OcTree& tree() const { return *tree_; }
     /// Sizes of the tree as of the last flush() or tidy().
     OctomapSizes sizes() const { return sizes_of(*tree_); }
     /// The bytes of a .bt file: maximum likelihood, pruned.
@@ -137,7 +137,7 @@ class OctomapBuilder {
         BlockSet dirty;             ///< blocks that are built anew
         bool everything = false;    ///< all are
         std::size_t surveyed = 0, inserted = 0;
-        std::unique_ptr<octomap::OcTree> tree;  ///< null while the dirty blocks are being found
+        std::unique_ptr<::octomap::OcTree> tree;  ///< null while the dirty blocks are being found
     };
 
     bool insert_next(const std::stop_token& stop);
@@ -155,9 +155,9 @@ class OctomapBuilder {
     void mark_dirty(const std::vector<Voxel>& blocks);
 
     OctomapOptions options_;
-    std::map<int, Keyframe> keyframes_;      ///< by id
-    std::unique_ptr<octomap::OcTree> base_;  ///< of the frozen keyframes; null while there are none
-    std::unique_ptr<octomap::OcTree> tree_;
+    std::map<int, Keyframe> keyframes_;        ///< by id
+    std::unique_ptr<::octomap::OcTree> base_;  ///< of the frozen keyframes; null while there are none
+    std::unique_ptr<::octomap::OcTree> tree_;
     KeyframePoses poses_;               ///< by the trajectories
     std::optional<int> last_inserted_;  ///< highest id in tree_: higher ones are still to be inserted
     std::optional<int> last_frozen_;
@@ -169,4 +169,4 @@ class OctomapBuilder {
     std::size_t frozen_ = 0, rebuilds_ = 0, reinserted_ = 0;
 };
 
-}  // namespace planemap
+}  // namespace planemap::octomap

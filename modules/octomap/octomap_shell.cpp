@@ -12,7 +12,7 @@
 #include "messages/convert.hpp"
 #include "messages/decode.hpp"
 
-namespace planemap {
+namespace planemap::octomap {
 
 namespace {
 
@@ -28,8 +28,8 @@ constexpr std::size_t kMaxWaiting = 256;
 
 }  // namespace
 
-OctomapShell::OctomapShell(Bus& bus, std::shared_ptr<FrameDecoder> decoder, const OctomapOptions& options,
-                           Building building)
+OctomapShell::OctomapShell(messages::Bus& bus, std::shared_ptr<messages::FrameDecoder> decoder,
+                           const OctomapOptions& options, Building building)
     : bus_(bus),
       decoder_(std::move(decoder)),
       builder_(std::make_unique<OctomapBuilder>(options)),
@@ -37,9 +37,10 @@ OctomapShell::OctomapShell(Bus& bus, std::shared_ptr<FrameDecoder> decoder, cons
     if (building == Building::kInBackground) worker_ = std::make_unique<OctomapWorker>(*builder_);
     decoder_->subscribe(
         status_, 8, [this](const auto& frame) { on_frame(frame); }, false);
-    bus_.subscribe(channels::kKeyframe, status_.guard([this](const RawMessage& m) { on_keyframe(m); }), 256);
-    bus_.subscribe(channels::kTrajectory, status_.guard([this](const RawMessage& m) { on_trajectory(m); }),
-                   16);
+    bus_.subscribe(messages::channels::kKeyframe,
+                   status_.guard([this](const messages::RawMessage& m) { on_keyframe(m); }), 256);
+    bus_.subscribe(messages::channels::kTrajectory,
+                   status_.guard([this](const messages::RawMessage& m) { on_trajectory(m); }), 16);
 }
 
 OctomapShell::~OctomapShell() {
@@ -50,7 +51,7 @@ OctomapShell::~OctomapShell() {
     std::thread([left = std::move(builder_)] {}).detach();
 }
 
-void OctomapShell::on_frame(const std::shared_ptr<const Frame>& frame) {
+void OctomapShell::on_frame(const std::shared_ptr<const messages::Frame>& frame) {
     recent_.push_back({frame, frame->image_bytes()});
     recent_bytes_ += recent_.back().bytes;
     const std::size_t most = worker_ ? kFramesInBackground : kFramesInHandler;
@@ -65,8 +66,8 @@ void OctomapShell::drop(const char* reason, std::int64_t count) {
     status_.lost(reason, count);
 }
 
-void OctomapShell::on_keyframe(const RawMessage& message) {
-    const keyframe_t received = decode<keyframe_t>(message.bytes);
+void OctomapShell::on_keyframe(const messages::RawMessage& message) {
+    const keyframe_t received = messages::decode<keyframe_t>(message.bytes);
     if (!keyframe_guard_.admits(received.session, received.seq, received.utime, message.bytes)) return;
     watch_.came(received.id, received.previous_id, received.utime);
     const auto recent = std::find_if(recent_.begin(), recent_.end(),
@@ -74,7 +75,7 @@ void OctomapShell::on_keyframe(const RawMessage& message) {
     if (recent == recent_.end()) return drop("keyframes whose frame was gone");
     Waiting keyframe{recent->frame, nullptr};
     if (worker_) {
-        const ModuleStatus::Work work(status_);
+        const messages::ModuleStatus::Work work(status_);
         keyframe = {nullptr, std::make_shared<StoredScan>(recent->frame->depth(), recent->frame->camera())};
     }
     waiting_[received.id] = std::move(keyframe);
@@ -84,11 +85,11 @@ void OctomapShell::on_keyframe(const RawMessage& message) {
     }
 }
 
-void OctomapShell::on_trajectory(const RawMessage& message) {
-    const trajectory_t received = decode<trajectory_t>(message.bytes);
-    const KeyframeTrajectory trajectory = from_message(received);
+void OctomapShell::on_trajectory(const messages::RawMessage& message) {
+    const trajectory_t received = messages::decode<trajectory_t>(message.bytes);
+    const KeyframeTrajectory trajectory = messages::from_message(received);
     if (!trajectory_guard_.admits(received.session, received.seq, std::nullopt, message.bytes)) return;
-    watch_.named(trajectory, now_us());
+    watch_.named(trajectory, messages::now_us());
     last_utime_ = trajectory.utime;
     last_revision_ = trajectory.revision;
     if (!worker_) builder_->update(trajectory);
@@ -110,7 +111,7 @@ void OctomapShell::add(int id, const Waiting& keyframe, const Pose& world_from_c
         return status_.published();
     }
     const DepthImage& depth = keyframe.frame->depth();
-    const ModuleStatus::Work work(status_);
+    const messages::ModuleStatus::Work work(status_);
     if (builder_->add(id, depth, keyframe.frame->camera(), world_from_camera)) {
         status_.published();
     } else {
@@ -120,10 +121,10 @@ void OctomapShell::add(int id, const Waiting& keyframe, const Pose& world_from_c
 
 int OctomapShell::poll() {
     constexpr int kIdleMs = 100;
-    watch_.tell(now_us());
+    watch_.tell(messages::now_us());
     if (worker_) {
         if (const auto state = worker_->newer_state()) publish(*state);
-    } else if (unpublished_ && now_us() - last_publish_us_ >= kPublishPeriodUs) {
+    } else if (unpublished_ && messages::now_us() - last_publish_us_ >= kPublishPeriodUs) {
         publish(state());
     }
     return kIdleMs;
@@ -142,7 +143,7 @@ void OctomapShell::finish() {
 
 OctomapState OctomapShell::state() {
     {
-        const ModuleStatus::Work work(status_);
+        const messages::ModuleStatus::Work work(status_);
         builder_->flush();
     }
     OctomapState state;
@@ -173,13 +174,13 @@ void OctomapShell::publish(const OctomapState& state) {
     message.ot_bytes = static_cast<std::int64_t>(state.sizes.ot_bytes);
     message.n_keyframes = static_cast<std::int32_t>(state.keyframes);
     message.revision = state.revision;
-    bus_.publish(channels::kOctomapSize, message);
+    bus_.publish(messages::channels::kOctomapSize, message);
     status_.set_text(std::to_string(state.keyframes) + " keyframes in " +
                      std::to_string(state.sizes.memory_bytes / 1024) + " KiB of memory, " +
                      std::to_string(state.sizes.bt_bytes) + " B .bt" +
                      (state.is_up_to_date ? "" : ", some not yet where they belong"));
-    last_publish_us_ = now_us();
+    last_publish_us_ = messages::now_us();
     unpublished_ = false;
 }
 
-}  // namespace planemap
+}  // namespace planemap::octomap

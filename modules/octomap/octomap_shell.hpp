@@ -15,7 +15,7 @@
 #include "octomap/octomap_builder.hpp"
 #include "octomap/octomap_worker.hpp"
 
-namespace planemap {
+namespace planemap::octomap {
 
 /// Where the OctoMap is built.
 enum class Building {
@@ -25,13 +25,13 @@ enum class Building {
 
 /// The depth of keyframes (OPENNI_FRAME, PLANEMAP_KEYFRAME) at their poses (PLANEMAP_TRAJECTORY) into an
 /// OctoMap; its size on PLANEMAP_OCTOMAP_SIZE.
-class OctomapShell : public Shell {
+class OctomapShell : public messages::Shell {
   public:
-    OctomapShell(Bus& bus, std::shared_ptr<FrameDecoder> decoder, const OctomapOptions& options,
-                 Building building = Building::kInHandler);
+    OctomapShell(messages::Bus& bus, std::shared_ptr<messages::FrameDecoder> decoder,
+                 const OctomapOptions& options, Building building = Building::kInHandler);
     ~OctomapShell() override;
 
-    ModuleStatus& status() override { return status_; }
+    messages::ModuleStatus& status() override { return status_; }
     int poll() override;
     /// Brings the tree up to date with the last trajectory and publishes all its sizes. In the background it
     /// does so for a quarter of a second at most; then the sizes are those of what the tree holds by then,
@@ -43,33 +43,33 @@ class OctomapShell : public Shell {
 
   private:
     struct Recent {
-        std::shared_ptr<const Frame> frame;
+        std::shared_ptr<const messages::Frame> frame;
         std::size_t bytes;
     };
     /// A keyframe without a pose. In the background its depth is compressed at once: to do so with many
     /// when their poses come would block.
     struct Waiting {
-        std::shared_ptr<const Frame> frame;
+        std::shared_ptr<const messages::Frame> frame;
         std::shared_ptr<const StoredScan> scan;
     };
 
-    void on_frame(const std::shared_ptr<const Frame>& frame);
-    void on_keyframe(const RawMessage& message);
-    void on_trajectory(const RawMessage& message);
+    void on_frame(const std::shared_ptr<const messages::Frame>& frame);
+    void on_keyframe(const messages::RawMessage& message);
+    void on_trajectory(const messages::RawMessage& message);
     void add(int id, const Waiting& keyframe, const Pose& world_from_camera);
     void drop(const char* reason, std::int64_t count = 1);
     /// In the handler: the state with everything brought up to date.
     OctomapState state();
     void publish(const OctomapState& state);
 
-    Bus& bus_;
-    std::shared_ptr<FrameDecoder> decoder_;
+    messages::Bus& bus_;
+    std::shared_ptr<messages::FrameDecoder> decoder_;
     std::unique_ptr<OctomapBuilder> builder_;
     std::unique_ptr<OctomapWorker> worker_;  ///< null when built in the handler
-    ModuleStatus status_{"octomap"};
-    StreamGuard keyframe_guard_{channels::kKeyframe, "keyframes", status_};
-    StreamGuard trajectory_guard_{channels::kTrajectory, "trajectories", status_, false};
-    KeyframeWatch watch_{status_, "the OctoMap is incomplete"};
+    messages::ModuleStatus status_{"octomap"};
+    messages::StreamGuard keyframe_guard_{messages::channels::kKeyframe, "keyframes", status_};
+    messages::StreamGuard trajectory_guard_{messages::channels::kTrajectory, "trajectories", status_, false};
+    messages::KeyframeWatch watch_{status_, "the OctoMap is incomplete"};
     std::deque<Recent> recent_;
     std::size_t recent_bytes_ = 0;
     std::map<int, Waiting> waiting_;  ///< by keyframe id
@@ -81,4 +81,4 @@ class OctomapShell : public Shell {
     std::int32_t seq_ = 0;
 };
 
-}  // namespace planemap
+}  // namespace planemap::octomap

@@ -4,14 +4,14 @@
 #include <sstream>
 #include <vector>
 
-namespace planemap {
+namespace planemap::octomap {
 
 namespace {
 
 constexpr char kBtKind[] = "# Octomap OcTree binary file", kOtKind[] = "# Octomap OcTree file";
 
 /// What OctoMap's own write() and writeBinary() begin with; they are not used because they print.
-std::string header(const char* kind, const octomap::OcTree& tree, std::size_t nodes) {
+std::string header(const char* kind, const ::octomap::OcTree& tree, std::size_t nodes) {
     std::ostringstream out;
     out << kind << "\n# (feel free to add / change comments, but leave the first line as it is!)\n#\nid "
         << tree.getTreeType() << "\nsize " << nodes << "\nres " << tree.getResolution() << "\ndata\n";
@@ -22,12 +22,12 @@ std::string header(const char* kind, const octomap::OcTree& tree, std::size_t no
 struct Nodes {
     std::size_t inner = 0, leaves = 0;
     std::size_t count() const { return inner + leaves; }
-    std::size_t memory_bytes(const octomap::OcTree& tree) const {
-        using Tree = octomap::OcTreeBaseImpl<octomap::OcTreeNode, octomap::AbstractOccupancyOcTree>;
-        return sizeof(Tree) + tree.memoryUsageNode() * count() + inner * sizeof(octomap::OcTreeNode* [8]);
+    std::size_t memory_bytes(const ::octomap::OcTree& tree) const {
+        using Tree = ::octomap::OcTreeBaseImpl<::octomap::OcTreeNode, ::octomap::AbstractOccupancyOcTree>;
+        return sizeof(Tree) + tree.memoryUsageNode() * count() + inner * sizeof(::octomap::OcTreeNode* [8]);
     }
     /// A .bt file holds two bytes an inner node, and says nothing more of leaves.
-    std::size_t bt_bytes(const octomap::OcTree& tree) const {
+    std::size_t bt_bytes(const ::octomap::OcTree& tree) const {
         return header(kBtKind, tree, count()).size() + 2 * inner;
     }
 };
@@ -35,7 +35,7 @@ struct Nodes {
 /// One walk over a tree counts it, the tree that its .bt file holds, and the occupied part of that.
 class Census {
   public:
-    explicit Census(const octomap::OcTree& tree) : tree_(tree) {
+    explicit Census(const ::octomap::OcTree& tree) : tree_(tree) {
         if (tree.getRoot() != nullptr) count_inner(tree.getRoot(), 0);
     }
 
@@ -63,7 +63,7 @@ class Census {
         bool is_leaf, holds_occupied;
     };
 
-    Likely count(const octomap::OcTreeNode* node, unsigned depth) {
+    Likely count(const ::octomap::OcTreeNode* node, unsigned depth) {
         if (tree_.nodeHasChildren(node)) return count_inner(node, depth);
         const bool occupied = tree_.isNodeOccupied(node);
         ++whole_.leaves;
@@ -72,7 +72,7 @@ class Census {
         return {true, occupied};
     }
 
-    Likely count_inner(const octomap::OcTreeNode* node, unsigned depth) {
+    Likely count_inner(const ::octomap::OcTreeNode* node, unsigned depth) {
         ++whole_.inner;
         std::size_t leaves = 0, occupied_leaves = 0;
         bool holds_occupied = false;
@@ -93,19 +93,19 @@ class Census {
         return {false, holds_occupied};
     }
 
-    const octomap::OcTree& tree_;
+    const ::octomap::OcTree& tree_;
     Nodes whole_, likely_, occupied_;
     std::size_t occupied_leaves_ = 0, occupied_voxels_ = 0;
 };
 
 }  // namespace
 
-OctomapSizes sizes_of(const octomap::OcTree& tree) {
+OctomapSizes sizes_of(const ::octomap::OcTree& tree) {
     return Census(tree).sizes();
 }
 
-std::string bt_of(const octomap::OcTree& tree) {
-    octomap::OcTree likely(tree);
+std::string bt_of(const ::octomap::OcTree& tree) {
+    ::octomap::OcTree likely(tree);
     likely.toMaxLikelihood();
     likely.prune();
     std::ostringstream out;
@@ -118,12 +118,12 @@ namespace {
 
 /// Two bytes an inner node, as OctoMap writes them: of each child two bits, 00 unknown, 01 free, 10 occupied
 /// (the lower bit first), 11 an inner node, which follows.
-void write_occupied(const octomap::OcTree& tree, const octomap::OcTreeNode* node, std::string& out) {
+void write_occupied(const ::octomap::OcTree& tree, const ::octomap::OcTreeNode* node, std::string& out) {
     unsigned bits = 0;
-    std::vector<const octomap::OcTreeNode*> inner;
+    std::vector<const ::octomap::OcTreeNode*> inner;
     for (unsigned i = 0; i < 8; ++i) {
         if (!tree.nodeChildExists(node, i)) continue;
-        const octomap::OcTreeNode* child = tree.getNodeChild(node, i);
+        const ::octomap::OcTreeNode* child = tree.getNodeChild(node, i);
         // Of an inner node this is the most likely of its leaves: whether it holds an occupied one.
         if (!tree.isNodeOccupied(child)) continue;
         const bool is_inner = tree.nodeHasChildren(child);
@@ -132,26 +132,26 @@ void write_occupied(const octomap::OcTree& tree, const octomap::OcTreeNode* node
     }
     out += static_cast<char>(bits & 255);
     out += static_cast<char>(bits >> 8);
-    for (const octomap::OcTreeNode* child : inner) write_occupied(tree, child, out);
+    for (const ::octomap::OcTreeNode* child : inner) write_occupied(tree, child, out);
 }
 
 }  // namespace
 
-std::string bt_occupied_of(const octomap::OcTree& tree) {
-    octomap::OcTree likely(tree);
+std::string bt_occupied_of(const ::octomap::OcTree& tree) {
+    ::octomap::OcTree likely(tree);
     likely.toMaxLikelihood();
     likely.prune();
     std::string out = header(kBtKind, likely, Census(tree).occupied().count());
-    if (const octomap::OcTreeNode* root = likely.getRoot(); root != nullptr && likely.isNodeOccupied(root))
+    if (const ::octomap::OcTreeNode* root = likely.getRoot(); root != nullptr && likely.isNodeOccupied(root))
         write_occupied(likely, root, out);
     return out;
 }
 
-std::string ot_of(const octomap::OcTree& tree) {
+std::string ot_of(const ::octomap::OcTree& tree) {
     std::ostringstream out;
     out << header(kOtKind, tree, tree.size());
     tree.writeData(out);
     return std::move(out).str();
 }
 
-}  // namespace planemap
+}  // namespace planemap::octomap

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <string>
 
-namespace planemap {
+namespace planemap::octomap {
 
 /// How large an OctoMap is: as it is worked on, as a file, and as that file when it is loaded again.
 struct OctomapSizes {
@@ -24,13 +24,13 @@ struct OctomapSizes {
 
 /// Counts one pass over the tree; nothing is copied or written. Precondition: the tree is pruned and its
 /// inner nodes are up to date.
-OctomapSizes sizes_of(const octomap::OcTree& tree);
+OctomapSizes sizes_of(const ::octomap::OcTree& tree);
 
 /// The bytes of a .bt file: maximum likelihood, pruned.
-std::string bt_of(const octomap::OcTree& tree);
+std::string bt_of(const ::octomap::OcTree& tree);
 /// The same with the occupied space only: free space is left out as if it were not known.
-std::string bt_occupied_of(const octomap::OcTree& tree);
+std::string bt_occupied_of(const ::octomap::OcTree& tree);
 /// The bytes of an .ot file.
-std::string ot_of(const octomap::OcTree& tree);
+std::string ot_of(const ::octomap::OcTree& tree);
 
-}  // namespace planemap
+}  // namespace planemap::octomap

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace planemap {
+namespace planemap::octomap {
 
 namespace {
 
@@ -142,4 +142,4 @@ OctomapWorker::Clock::time_point OctomapWorker::next_wake() const {
     return wake;
 }
 
-}  // namespace planemap
+}  // namespace planemap::octomap

@@ -14,7 +14,7 @@
 #include "core/keyframe.hpp"
 #include "octomap/octomap_builder.hpp"
 
-namespace planemap {
+namespace planemap::octomap {
 
 /// How an OctoMap stood at one moment.
 struct OctomapState {
@@ -86,4 +86,4 @@ class OctomapWorker {
     std::jthread thread_;  ///< last: it uses all of the above
 };
 
-}  // namespace planemap
+}  // namespace planemap::octomap

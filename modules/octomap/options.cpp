@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "octomap/octomap_builder.hpp"
 
-namespace planemap {
+namespace planemap::octomap {
 
 OptionList options_of(OctomapOptions& options) {
     using enum Audience;
@@ -27,4 +27,4 @@ void OctomapOptions::validate() const {
     check_options("OctomapOptions", *this);
 }
 
-}  // namespace planemap
+}  // namespace planemap::octomap

@@ -1,45 +1,45 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "octomap/scan_insertion.hpp"
 
-namespace planemap {
+namespace planemap::octomap {
 
 namespace {
 
-Voxel voxel(const octomap::OcTreeKey& key) {
+Voxel voxel(const ::octomap::OcTreeKey& key) {
     return {key[0], key[1], key[2]};
 }
 
-octomap::OcTreeKey key(const Voxel& v) {
-    return {static_cast<octomap::key_type>(v.x), static_cast<octomap::key_type>(v.y),
-            static_cast<octomap::key_type>(v.z)};
+::octomap::OcTreeKey key(const Voxel& v) {
+    return {static_cast<::octomap::key_type>(v.x), static_cast<::octomap::key_type>(v.y),
+            static_cast<::octomap::key_type>(v.z)};
 }
 
 }  // namespace
 
 /// One ray to the centre of each cell that was hit, as OctoMap's computeUpdate() casts them.
-void ScanInserter::trace(const octomap::OcTree& tree, std::span<const octomap::point3d> points,
-                         const octomap::point3d& origin, double max_range, const std::stop_token& stop) {
+void ScanInserter::trace(const ::octomap::OcTree& tree, std::span<const ::octomap::point3d> points,
+                         const ::octomap::point3d& origin, double max_range, const std::stop_token& stop) {
     ends_.clear();
     free_.clear();
     occupied_.clear();
-    for (const octomap::point3d& p : points) {
-        octomap::OcTreeKey end;
+    for (const ::octomap::point3d& p : points) {
+        ::octomap::OcTreeKey end;
         if (tree.coordToKeyChecked(p, end)) ends_.insert(voxel(end));
     }
     ends_.for_each([&](const Voxel& v) {
         if (stop.stop_requested()) return;
-        octomap::point3d end = tree.keyToCoord(key(v));
+        ::octomap::point3d end = tree.keyToCoord(key(v));
         if (max_range < 0 || (end - origin).norm() <= max_range) {
             occupied_.insert(v);
         } else {
             end = origin + (end - origin).normalized() * static_cast<float>(max_range);
         }
         if (!tree.computeRayKeys(origin, end, ray_)) return;
-        for (const octomap::OcTreeKey& passed : ray_) free_.insert(voxel(passed));
+        for (const ::octomap::OcTreeKey& passed : ray_) free_.insert(voxel(passed));
     });
 }
 
-void ScanInserter::apply(octomap::OcTree& tree, const BlockSet* only, const std::stop_token& stop) const {
+void ScanInserter::apply(::octomap::OcTree& tree, const BlockSet* only, const std::stop_token& stop) const {
     const auto wanted = [&](const Voxel& low) {
         return !stop.stop_requested() && (only == nullptr || only->contains(block_of(low)));
     };
@@ -65,4 +65,4 @@ std::vector<Voxel> ScanInserter::blocks() const {
     return list;
 }
 
-}  // namespace planemap
+}  // namespace planemap::octomap

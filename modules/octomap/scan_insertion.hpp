@@ -10,7 +10,7 @@
 #include "octomap/tree_blocks.hpp"
 #include "octomap/voxel_set.hpp"
 
-namespace planemap {
+namespace planemap::octomap {
 
 /// Inserts scans into an OctoMap with the result of
 /// OcTree::insertPointCloud(scan, origin, max_range, lazy_eval = true, discretize = true), several times
@@ -20,19 +20,20 @@ class ScanInserter {
   public:
     /// Points and origin in the tree's frame, metres; points outside the tree's 16-bit key range are ignored.
     /// max_range < 0: no limit.
-    void insert(octomap::OcTree& tree, std::span<const octomap::point3d> points,
-                const octomap::point3d& origin, double max_range) {
+    void insert(::octomap::OcTree& tree, std::span<const ::octomap::point3d> points,
+                const ::octomap::point3d& origin, double max_range) {
         trace(tree, points, origin, max_range);
         apply(tree);
     }
 
     /// The first half of insert(): finds the cells that the scan passes and hits. Of the tree only its
     /// geometry is used. Once a stop is requested, what is found is not complete.
-    void trace(const octomap::OcTree& tree, std::span<const octomap::point3d> points,
-               const octomap::point3d& origin, double max_range, const std::stop_token& stop = {});
+    void trace(const ::octomap::OcTree& tree, std::span<const ::octomap::point3d> points,
+               const ::octomap::point3d& origin, double max_range, const std::stop_token& stop = {});
     /// The second half: updates the cells that trace() found; if blocks are given, only those in them.
     /// Once a stop is requested, not all of them.
-    void apply(octomap::OcTree& tree, const BlockSet* only = nullptr, const std::stop_token& stop = {}) const;
+    void apply(::octomap::OcTree& tree, const BlockSet* only = nullptr,
+               const std::stop_token& stop = {}) const;
     /// The blocks that the cells of the last trace() lie in.
     std::vector<Voxel> blocks() const;
 
@@ -43,7 +44,7 @@ class ScanInserter {
 
   private:
     VoxelSet ends_, free_, occupied_;
-    octomap::KeyRay ray_;
+    ::octomap::KeyRay ray_;
 };
 
-}  // namespace planemap
+}  // namespace planemap::octomap

@@ -6,7 +6,7 @@
 #include <memory>
 #include <stdexcept>
 
-namespace planemap {
+namespace planemap::octomap {
 
 namespace {
 
@@ -43,7 +43,7 @@ DepthImage inflated(const std::string& bytes, int width, int height) {
     return depth;
 }
 
-octomap::point3d point3d(const Eigen::Vector3d& p) {
+::octomap::point3d point3d(const Eigen::Vector3d& p) {
     return {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())};
 }
 
@@ -56,11 +56,11 @@ StoredScan::StoredScan(const DepthImage& depth, const CameraInfo& camera) : came
     deflated_ = deflated(depth);
 }
 
-std::vector<octomap::point3d> StoredScan::points(const Pose& world_from_camera, int subsample) const {
+std::vector<::octomap::point3d> StoredScan::points(const Pose& world_from_camera, int subsample) const {
     const PinholeCamera& pinhole = camera_.depth;
     const DepthImage depth = inflated(deflated_, pinhole.width, pinhole.height);
     const Pose world_from_depth = world_from_camera * camera_.color_from_depth;
-    std::vector<octomap::point3d> points;
+    std::vector<::octomap::point3d> points;
     points.reserve(depth.pixels.size() / static_cast<std::size_t>(subsample * subsample));
     for (int v = 0; v < depth.height; v += subsample) {
         for (int u = 0; u < depth.width; u += subsample) {
@@ -73,8 +73,8 @@ std::vector<octomap::point3d> StoredScan::points(const Pose& world_from_camera, 
     return points;
 }
 
-octomap::point3d StoredScan::origin(const Pose& world_from_camera) const {
+::octomap::point3d StoredScan::origin(const Pose& world_from_camera) const {
     return point3d((world_from_camera * camera_.color_from_depth).translation());
 }
 
-}  // namespace planemap
+}  // namespace planemap::octomap

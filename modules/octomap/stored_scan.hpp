@@ -11,7 +11,7 @@
 #include "core/image.hpp"
 #include "core/pose.hpp"
 
-namespace planemap {
+namespace planemap::octomap {
 
 /// A depth image with its camera, compressed without loss: about 150 KB at 640 x 480.
 class StoredScan {
@@ -24,13 +24,13 @@ class StoredScan {
     std::size_t bytes() const { return sizeof *this + deflated_.capacity(); }
     /// Where the readings lie in the world, metres, of every n-th pixel along u and v. Readings outside the
     /// camera's depth range are left out.
-    std::vector<octomap::point3d> points(const Pose& world_from_camera, int subsample) const;
+    std::vector<::octomap::point3d> points(const Pose& world_from_camera, int subsample) const;
     /// Where the depth camera is in the world, metres.
-    octomap::point3d origin(const Pose& world_from_camera) const;
+    ::octomap::point3d origin(const Pose& world_from_camera) const;
 
   private:
     CameraInfo camera_;
     std::string deflated_;
 };
 
-}  // namespace planemap
+}  // namespace planemap::octomap

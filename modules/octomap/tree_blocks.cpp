@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "octomap/tree_blocks.hpp"
 
-namespace planemap {
+namespace planemap::octomap {
 
 namespace {
 
-using Node = octomap::OcTreeNode;
-using Tree = octomap::OcTree;
+using Node = ::octomap::OcTreeNode;
+using Tree = ::octomap::OcTree;
 
 /// A tree that is put together from two others. (To copy all and delete the blocks is no way: OctoMap's
 /// deleteNode() leaks what is below an inner node and miscounts.)
@@ -97,4 +97,4 @@ void bring_up_to_date(Tree& tree, const std::stop_token& stop) {
     if (tree.getRoot() != nullptr) bring_up_to_date(tree, tree.getRoot(), 0, stop);
 }
 
-}  // namespace planemap
+}  // namespace planemap::octomap

@@ -10,7 +10,7 @@
 
 #include "octomap/voxel_set.hpp"
 
-namespace planemap {
+namespace planemap::octomap {
 
 constexpr int kBlockBits = 5;  ///< 2^5 cells along each edge
 
@@ -25,11 +25,11 @@ inline Voxel block_of(const Voxel& cell) {
 /// A tree with the content of `inside` (nothing, if it is null) in the blocks, and of `outside` elsewhere.
 /// Both have the same resolution. Inner nodes are not brought up to date. Once a stop is requested, the copy
 /// is not complete.
-std::unique_ptr<octomap::OcTree> composed(const octomap::OcTree& outside, const octomap::OcTree* inside,
-                                          const BlockSet& blocks, const std::stop_token& stop = {});
+std::unique_ptr<::octomap::OcTree> composed(const ::octomap::OcTree& outside, const ::octomap::OcTree* inside,
+                                            const BlockSet& blocks, const std::stop_token& stop = {});
 
 /// Brings inner nodes up to date and prunes: updateInnerOccupancy() and prune() in one walk, which a stop
 /// ends early.
-void bring_up_to_date(octomap::OcTree& tree, const std::stop_token& stop = {});
+void bring_up_to_date(::octomap::OcTree& tree, const std::stop_token& stop = {});
 
-}  // namespace planemap
+}  // namespace planemap::octomap

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace planemap {
+namespace planemap::octomap {
 
 void VoxelSet::clear() {
     keys_.clear();
@@ -31,4 +31,4 @@ void VoxelSet::rehash(int log2_slots) {
     for (std::size_t i = 0; i < keys_.size(); ++i) slots_[find(keys_[i])] = static_cast<std::uint32_t>(i + 1);
 }
 
-}  // namespace planemap
+}  // namespace planemap::octomap

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace planemap {
+namespace planemap::octomap {
 
 /// A voxel by its integer coordinates, each less than VoxelSet::kMaxCoordinate away from 0.
 struct Voxel {
@@ -107,4 +107,4 @@ class VoxelSet {
     std::size_t last_block_ = 0;
 };
 
-}  // namespace planemap
+}  // namespace planemap::octomap

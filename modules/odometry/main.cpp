@@ -2,11 +2,12 @@
 #include "odometry/odometry_shell.hpp"
 
 int main(int argc, char** argv) {
-    planemap::Process process("odometry", "Frames and planar regions to the camera's motion, and keyframes.");
+    planemap::messages::Process process("odometry",
+                                        "Frames and planar regions to the camera's motion, and keyframes.");
     planemap::odometry::OdometryOptions options;
     process.flags().add(options_of(options));
-    return process.run(argc, argv, [&](planemap::Bus& bus) {
+    return process.run(argc, argv, [&](planemap::messages::Bus& bus) {
         return std::make_unique<planemap::odometry::OdometryShell>(
-            bus, std::make_shared<planemap::FrameDecoder>(bus), options);
+            bus, std::make_shared<planemap::messages::FrameDecoder>(bus), options);
     });
 }

@@ -13,7 +13,7 @@ namespace planemap::odometry {
 namespace {
 
 /// Why a lost frame's depth cannot be the help that it should be; nullptr when it can.
-const char* fault_of_depth(const Frame& frame) {
+const char* fault_of_depth(const messages::Frame& frame) {
     constexpr double kHardlyAny = 0.01;  // share of an image's pixels
     const CameraInfo& camera = frame.camera();
     const auto share = [&](const DepthImage& depth) {
@@ -30,17 +30,20 @@ const char* fault_of_depth(const Frame& frame) {
 
 }  // namespace
 
-OdometryShell::OdometryShell(Bus& bus, std::shared_ptr<FrameDecoder> decoder, const OdometryOptions& options)
+OdometryShell::OdometryShell(messages::Bus& bus, std::shared_ptr<messages::FrameDecoder> decoder,
+                             const OdometryOptions& options)
     : bus_(bus), decoder_(std::move(decoder)), odometry_(options) {
     decoder_->subscribe(status_, 8, [this](auto frame) { on_frame(std::move(frame)); });
-    bus_.subscribe(channels::kRegions, status_.guard([this](const RawMessage& m) { on_regions(m); }), 8);
+    bus_.subscribe(messages::channels::kRegions,
+                   status_.guard([this](const messages::RawMessage& m) { on_regions(m); }), 8);
 }
 
-void OdometryShell::on_frame(std::shared_ptr<const Frame> frame) {
+void OdometryShell::on_frame(std::shared_ptr<const messages::Frame> frame) {
     heard_ = true;
     Waiting input{std::move(frame), std::nullopt};
-    const auto early = std::find_if(early_regions_.begin(), early_regions_.end(),
-                                    [&](const FrameRegions& r) { return r.utime == input.frame->utime(); });
+    const auto early =
+        std::find_if(early_regions_.begin(), early_regions_.end(),
+                     [&](const messages::FrameRegions& r) { return r.utime == input.frame->utime(); });
     if (early != early_regions_.end()) {
         input.regions = std::move(*early);
         early_regions_.erase(early);
@@ -49,8 +52,9 @@ void OdometryShell::on_frame(std::shared_ptr<const Frame> frame) {
     process_ready(missing_ >= kMaxMissing && !bus_.in_process() ? 0 : kMaxWaiting);
 }
 
-void OdometryShell::on_regions(const RawMessage& message) {
-    FrameRegions regions = from_message(decode<planar_regions_t>(message.bytes));
+void OdometryShell::on_regions(const messages::RawMessage& message) {
+    messages::FrameRegions regions =
+        messages::from_message(messages::decode<planar_regions_t>(message.bytes));
     missing_ = 0;
     heard_ = true;
     const auto input = std::find_if(waiting_.begin(), waiting_.end(),
@@ -96,39 +100,41 @@ int OdometryShell::poll() {
 }
 
 void OdometryShell::process(const Waiting& input) {
-    const Frame& frame = *input.frame;
+    const messages::Frame& frame = *input.frame;
     OdometryFrame in;
     in.utime = frame.utime();
     in.camera = &frame.camera();
     try {
         in.depth = &frame.depth_in_color();
-    } catch (
-        const MessageError& error) {  // here, not in a handler's guard: other frames wait behind this one
+    } catch (const messages::MessageError&
+                 error) {  // here, not in a handler's guard: other frames wait behind this one
         status_.decode_error();
         status_.set_text(error.what());
-        bus_.report(channels::kFrame, error.what());
+        bus_.report(messages::channels::kFrame, error.what());
         return;
     }
     try {
         in.gray = frame.gray();
         in.color_utime = frame.color_utime();
-    } catch (const MessageError& error) {  // a broken colour image leaves a good depth image
+    } catch (const messages::MessageError& error) {  // a broken colour image leaves a good depth image
         status_.decode_error();
         status_.set_text(error.what());
-        bus_.complaints().add(std::string(channels::kFrame) + ": colour left out: " + error.what());
+        bus_.complaints().add(std::string(messages::channels::kFrame) + ": colour left out: " + error.what());
     }
     if (input.regions) in.regions = input.regions->regions;
     OdometryResult result;
     {
-        const ModuleStatus::Work work(status_);
+        const messages::ModuleStatus::Work work(status_);
         result = odometry_.process(in);
     }
-    bus_.publish(channels::kOdometry, to_message(result.estimate, odometry_seq_++, bus_.session()));
+    bus_.publish(messages::channels::kOdometry,
+                 messages::to_message(result.estimate, odometry_seq_++, bus_.session()));
     if (result.estimate.status != TrackingStatus::kLost)
-        bus_.publish(channels::kPose, to_pose_message(result.estimate));
+        bus_.publish(messages::channels::kPose, messages::to_pose_message(result.estimate));
     if (const auto& keyframe = result.keyframe) {
-        bus_.publish(channels::kKeyframe, to_message(*keyframe, keyframe_seq_++, bus_.session()));
-        remark_new_part(status_, keyframe->id, keyframe->previous_id, keyframe->utime);
+        bus_.publish(messages::channels::kKeyframe,
+                     messages::to_message(*keyframe, keyframe_seq_++, bus_.session()));
+        messages::remark_new_part(status_, keyframe->id, keyframe->previous_id, keyframe->utime);
     }
     status_.published();
     const bool is_lost = result.estimate.status == TrackingStatus::kLost;

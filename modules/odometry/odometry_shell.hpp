@@ -16,15 +16,16 @@ namespace planemap::odometry {
 /// A frame waits for its regions until a later one's come, kMaxWaiting frames wait, or it has waited for
 /// kMaxWait; then it goes on without. After kMaxMissing of these in a row (no segmentation on the bus) frames
 /// do not wait, until regions come again.
-class OdometryShell : public Shell {
+class OdometryShell : public messages::Shell {
   public:
-    OdometryShell(Bus& bus, std::shared_ptr<FrameDecoder> decoder, const OdometryOptions& options);
+    OdometryShell(messages::Bus& bus, std::shared_ptr<messages::FrameDecoder> decoder,
+                  const OdometryOptions& options);
 
     /// Reasons in status().losses() for frames that were not tracked; others had depth that could be used.
     static constexpr const char* kNoReadings = "untracked frames with hardly a depth reading in range";
     static constexpr const char* kBesideColor = "untracked frames whose depth lies beside the colour image";
 
-    ModuleStatus& status() override { return status_; }
+    messages::ModuleStatus& status() override { return status_; }
     /// Goes on with what has waited for too long.
     int poll() override;
     /// Handles the frames that still wait.
@@ -38,24 +39,25 @@ class OdometryShell : public Shell {
     static constexpr int kMaxMissing = 10;  ///< frames in a row without regions, then nothing waits
 
     struct Waiting {
-        std::shared_ptr<const Frame> frame;
-        std::optional<FrameRegions> regions;
+        std::shared_ptr<const messages::Frame> frame;
+        std::optional<messages::FrameRegions> regions;
         Clock::time_point since = Clock::now();
     };
-    void on_frame(std::shared_ptr<const Frame> frame);
-    void on_regions(const RawMessage& message);
+    void on_frame(std::shared_ptr<const messages::Frame> frame);
+    void on_regions(const messages::RawMessage& message);
     void process_ready(std::size_t max_waiting);
     void process_front();
     void process(const Waiting& input);
 
-    Bus& bus_;
-    std::shared_ptr<FrameDecoder> decoder_;
+    messages::Bus& bus_;
+    std::shared_ptr<messages::FrameDecoder> decoder_;
     Odometry odometry_;
-    ModuleStatus status_{"odometry"};
+    messages::ModuleStatus status_{"odometry"};
     std::deque<Waiting> waiting_;
-    std::deque<FrameRegions> early_regions_;  ///< of frames that have not come yet; at most kMaxWaiting
-    int missing_ = 0;                         ///< frames in a row that waited in vain
-    bool heard_ = false;                      ///< a message came since the last poll()
+    std::deque<messages::FrameRegions>
+        early_regions_;   ///< of frames that have not come yet; at most kMaxWaiting
+    int missing_ = 0;     ///< frames in a row that waited in vain
+    bool heard_ = false;  ///< a message came since the last poll()
     std::int32_t odometry_seq_ = 0, keyframe_seq_ = 0;
 };
 

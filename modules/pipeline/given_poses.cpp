@@ -5,7 +5,7 @@
 #include "messages/convert.hpp"
 #include "messages/decode.hpp"
 
-namespace planemap {
+namespace planemap::pipeline {
 
 namespace {
 constexpr std::int64_t kMaxGapUs = 100000;
@@ -15,12 +15,12 @@ std::optional<Pose> given_pose(const Trajectory& trajectory, std::int64_t utime)
     return pose_at(trajectory, utime, kMaxGapUs);
 }
 
-GivenPoses::GivenPoses(Bus& bus, Trajectory poses) : bus_(bus), poses_(std::move(poses)) {
-    bus_.subscribe(channels::kKeyframe, [this](const RawMessage& m) { on_keyframe(m); });
+GivenPoses::GivenPoses(messages::Bus& bus, Trajectory poses) : bus_(bus), poses_(std::move(poses)) {
+    bus_.subscribe(messages::channels::kKeyframe, [this](const messages::RawMessage& m) { on_keyframe(m); });
 }
 
-void GivenPoses::on_keyframe(const RawMessage& message) {
-    const keyframe_t keyframe = decode<keyframe_t>(message.bytes);
+void GivenPoses::on_keyframe(const messages::RawMessage& message) {
+    const keyframe_t keyframe = messages::decode<keyframe_t>(message.bytes);
     const std::optional<Pose> pose = given_pose(poses_, keyframe.utime);
     const bool repeated = !keyframes_.keyframes.empty() && keyframe.id <= keyframes_.keyframes.back().id;
     if (repeated) return;  // the map has its pose
@@ -30,7 +30,7 @@ void GivenPoses::on_keyframe(const RawMessage& message) {
     }
     keyframes_.keyframes.push_back({keyframe.id, keyframe.utime, *pose});
     keyframes_.utime = keyframe.utime;
-    bus_.publish(channels::kTrajectory, to_message(keyframes_, seq_++));
+    bus_.publish(messages::channels::kTrajectory, messages::to_message(keyframes_, seq_++));
 }
 
-}  // namespace planemap
+}  // namespace planemap::pipeline

@@ -7,7 +7,7 @@
 #include "core/trajectory.hpp"
 #include "messages/bus.hpp"
 
-namespace planemap {
+namespace planemap::pipeline {
 
 /// Pose at a time, interpolated between poses at most 0.1 s apart; nothing where there are none.
 std::optional<Pose> given_pose(const Trajectory& trajectory, std::int64_t utime);
@@ -15,7 +15,7 @@ std::optional<Pose> given_pose(const Trajectory& trajectory, std::int64_t utime)
 /// Stands in for the graph: keyframes take their poses from a trajectory of the colour camera, in its world.
 class GivenPoses {
   public:
-    GivenPoses(Bus& bus, Trajectory poses);
+    GivenPoses(messages::Bus& bus, Trajectory poses);
 
     const Trajectory& poses() const { return poses_; }
     /// Of the keyframes that there is a pose for.
@@ -26,13 +26,13 @@ class GivenPoses {
     bool fit_nothing() const { return missing_ > 0 && keyframes_.keyframes.empty(); }
 
   private:
-    void on_keyframe(const RawMessage& message);
+    void on_keyframe(const messages::RawMessage& message);
 
-    Bus& bus_;
+    messages::Bus& bus_;
     Trajectory poses_;
     KeyframeTrajectory keyframes_;
     int missing_ = 0;
     std::int32_t seq_ = 0;
 };
 
-}  // namespace planemap
+}  // namespace planemap::pipeline

@@ -7,31 +7,33 @@
 #include "messages/convert.hpp"
 #include "messages/decode.hpp"
 
-namespace planemap {
+namespace planemap::pipeline {
 
-Pipeline::Pipeline(Bus& bus, const PipelineOptions& options)
+Pipeline::Pipeline(messages::Bus& bus, const PipelineOptions& options)
     : bus_(bus),
-      decoder_(std::make_shared<FrameDecoder>(bus, options.camera)),
+      decoder_(std::make_shared<messages::FrameDecoder>(bus, options.camera)),
       segmentation_(bus, decoder_, options.segmentation),
       odometry_(bus, decoder_, options.odometry) {
     if (options.poses) {
         given_poses_ = std::make_unique<GivenPoses>(bus, *options.poses);
     } else if (options.with_graph) {
-        graph_ = std::make_unique<GraphShell>(bus, options.graph);
+        graph_ = std::make_unique<graph::GraphShell>(bus, options.graph);
     }
     if ((graph_ || given_poses_) && options.with_map)
         map_ = std::make_unique<map::MapShell>(bus, options.map);
-    if (options.with_octomap) octomap_ = std::make_unique<OctomapShell>(bus, decoder_, options.octomap);
-    bus_.subscribe(channels::kOdometry, [this, keep = options.keep_estimates](const RawMessage& message) {
+    if (options.with_octomap)
+        octomap_ = std::make_unique<octomap::OctomapShell>(bus, decoder_, options.octomap);
+    bus_.subscribe(messages::channels::kOdometry, [this, keep = options.keep_estimates](
+                                                      const messages::RawMessage& message) {
         if (!keep) estimates_.clear();
-        estimates_.push_back(from_message(decode<odometry_t>(message.bytes)));
+        estimates_.push_back(messages::from_message(messages::decode<odometry_t>(message.bytes)));
     });
     if (graph_) {
-        bus_.subscribe(channels::kTrajectory,
-                       [this, keep = options.keep_estimates](const RawMessage& message) {
-                           if (!keep) poses_.keep_replaced([](int) { return false; });
-                           poses_.update(from_message(decode<trajectory_t>(message.bytes)).keyframes);
-                       });
+        bus_.subscribe(messages::channels::kTrajectory, [this, keep = options.keep_estimates](
+                                                            const messages::RawMessage& message) {
+            if (!keep) poses_.keep_replaced([](int) { return false; });
+            poses_.update(messages::from_message(messages::decode<trajectory_t>(message.bytes)).keyframes);
+        });
     }
 }
 
@@ -75,7 +77,7 @@ std::optional<std::string> Pipeline::reason_lost() {
     const auto lost = std::count_if(
         estimates_.begin(), estimates_.end(),
         [](const OdometryEstimate& estimate) { return estimate.status == TrackingStatus::kLost; });
-    const ModuleStatus& status = odometry_.status();
+    const messages::ModuleStatus& status = odometry_.status();
     const auto count_of = [&](const char* reason) {
         const auto found = status.losses().find(reason);
         return found == status.losses().end() ? 0 : found->second;
@@ -83,7 +85,7 @@ std::optional<std::string> Pipeline::reason_lost() {
     // Frames that never reached the odometry: no estimate tells of them.
     std::pair<std::int64_t, const char*> most{status.decode_error_count(), "frames that are corrupt"};
     std::int64_t refused = most.first;
-    for (const char* reason : FrameDecoder::refusals()) {
+    for (const char* reason : messages::FrameDecoder::refusals()) {
         refused += count_of(reason);
         most = std::max(most, {count_of(reason), reason});
     }
@@ -100,4 +102,4 @@ std::string Pipeline::why_lost() {
     return reason_lost().value_or("depth is there, but nothing to follow in it and in the colour image");
 }
 
-}  // namespace planemap
+}  // namespace planemap::pipeline

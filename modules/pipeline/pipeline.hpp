@@ -18,14 +18,14 @@
 #include "pipeline/given_poses.hpp"
 #include "segmentation/segmentation_shell.hpp"
 
-namespace planemap {
+namespace planemap::pipeline {
 
 struct PipelineOptions {
     segmentation::SegmentationOptions segmentation;
     odometry::OdometryOptions odometry;
-    GraphOptions graph;
+    graph::GraphOptions graph;
     planemap::map::MapShellOptions map;
-    OctomapOptions octomap;
+    octomap::OctomapOptions octomap;
     bool with_graph = true;           ///< without it there is no map either
     std::optional<Trajectory> poses;  ///< instead of the graph's
     bool with_map = true;
@@ -38,7 +38,7 @@ struct PipelineOptions {
 /// With a memq:// bus nothing is lost, and the same input and options give the same result.
 class Pipeline {
   public:
-    Pipeline(Bus& bus, const PipelineOptions& options);
+    Pipeline(messages::Bus& bus, const PipelineOptions& options);
 
     /// Handles what was published until the bus is quiet.
     void settle() { bus_.drain(); }
@@ -61,26 +61,26 @@ class Pipeline {
     std::string why_lost();
 
     /// What went wrong on the bus, by its kind.
-    const Complaints& complaints() const { return bus_.complaints(); }
-    FrameDecoder& decoder() { return *decoder_; }
+    const messages::Complaints& complaints() const { return bus_.complaints(); }
+    messages::FrameDecoder& decoder() { return *decoder_; }
     segmentation::SegmentationShell& segmentation() { return segmentation_; }
     odometry::OdometryShell& odometry() { return odometry_; }
-    GraphShell* graph() { return graph_.get(); }                    ///< nullptr without one
+    graph::GraphShell* graph() { return graph_.get(); }             ///< nullptr without one
     const GivenPoses* given_poses() { return given_poses_.get(); }  ///< nullptr without
     planemap::map::MapShell& map() { return *map_; }  ///< precondition: with_map, and a graph or given poses
-    OctomapShell* octomap() { return octomap_.get(); }
+    octomap::OctomapShell* octomap() { return octomap_.get(); }
 
   private:
-    Bus& bus_;
-    std::shared_ptr<FrameDecoder> decoder_;
+    messages::Bus& bus_;
+    std::shared_ptr<messages::FrameDecoder> decoder_;
     segmentation::SegmentationShell segmentation_;
     odometry::OdometryShell odometry_;
-    std::unique_ptr<GraphShell> graph_;
+    std::unique_ptr<graph::GraphShell> graph_;
     std::unique_ptr<GivenPoses> given_poses_;
     std::unique_ptr<planemap::map::MapShell> map_;
-    std::unique_ptr<OctomapShell> octomap_;
+    std::unique_ptr<octomap::OctomapShell> octomap_;
     std::vector<OdometryEstimate> estimates_;
     KeyframePoses poses_;  ///< by the graph's trajectories
 };
 
-}  // namespace planemap
+}  // namespace planemap::pipeline

@@ -6,25 +6,25 @@
 
 namespace planemap::segmentation {
 
-SegmentationShell::SegmentationShell(Bus& bus, std::shared_ptr<FrameDecoder> decoder,
+SegmentationShell::SegmentationShell(messages::Bus& bus, std::shared_ptr<messages::FrameDecoder> decoder,
                                      const SegmentationOptions& options)
     : bus_(bus), decoder_(std::move(decoder)), segmenter_(make_segmenter(options)) {
     // A short queue: late regions are worth less than the next frame's.
     decoder_->subscribe(status_, 4, [this](const auto& frame) { on_frame(*frame); });
 }
 
-void SegmentationShell::on_frame(const Frame& frame) {
+void SegmentationShell::on_frame(const messages::Frame& frame) {
     const DepthImage& depth = frame.depth();
-    FrameRegions regions;
+    messages::FrameRegions regions;
     regions.utime = frame.utime();
     {
-        const ModuleStatus::Work work(status_);
+        const messages::ModuleStatus::Work work(status_);
         segmenter_->segment(depth, frame.camera(), segmentation_);
         const Pose& camera_from_depth = frame.camera().color_from_depth;
         for (const PlanarRegion& region : segmentation_.regions)
             regions.regions.push_back(camera_from_depth * region);
     }
-    bus_.publish(channels::kRegions, to_message(regions, seq_++));
+    bus_.publish(messages::channels::kRegions, messages::to_message(regions, seq_++));
     status_.published();
     status_.set_text(std::to_string(regions.regions.size()) + " regions");
 }

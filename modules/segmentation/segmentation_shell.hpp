@@ -11,20 +11,21 @@ namespace planemap::segmentation {
 
 /// OPENNI_FRAME to PLANEMAP_REGIONS: the depth image's planar regions in the camera frame (the colour
 /// camera's).
-class SegmentationShell : public Shell {
+class SegmentationShell : public messages::Shell {
   public:
-    SegmentationShell(Bus& bus, std::shared_ptr<FrameDecoder> decoder, const SegmentationOptions& options);
+    SegmentationShell(messages::Bus& bus, std::shared_ptr<messages::FrameDecoder> decoder,
+                      const SegmentationOptions& options);
 
-    ModuleStatus& status() override { return status_; }
+    messages::ModuleStatus& status() override { return status_; }
 
   private:
-    void on_frame(const Frame& frame);
+    void on_frame(const messages::Frame& frame);
 
-    Bus& bus_;
-    std::shared_ptr<FrameDecoder> decoder_;
+    messages::Bus& bus_;
+    std::shared_ptr<messages::FrameDecoder> decoder_;
     std::unique_ptr<Segmenter> segmenter_;
     Segmentation segmentation_;
-    ModuleStatus status_{"segmentation"};
+    messages::ModuleStatus status_{"segmentation"};
     std::int32_t seq_ = 0;
 };
 

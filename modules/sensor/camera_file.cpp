@@ -14,7 +14,7 @@
 #include "core/validation.hpp"
 #include "sensor/json_file.hpp"
 
-namespace planemap {
+namespace planemap::sensor {
 
 namespace {
 
@@ -337,4 +337,4 @@ CameraInfo camera_of_folder(const std::filesystem::path& folder, std::vector<std
         kExample);
 }
 
-}  // namespace planemap
+}  // namespace planemap::sensor

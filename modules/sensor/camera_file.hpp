@@ -9,7 +9,7 @@
 
 #include "core/camera.hpp"
 
-namespace planemap {
+namespace planemap::sensor {
 
 /// Reads a camera.json:
 ///   {"depth_camera": {"width": 640, "height": 480, "fx": 585, "fy": 585, "cx": 320, "cy": 240},
@@ -36,4 +36,4 @@ std::optional<CameraInfo> tum_camera(std::string_view folder_name);
 /// and std::runtime_error that shows what to write if there is neither.
 CameraInfo camera_of_folder(const std::filesystem::path& folder, std::vector<std::string>* notes = nullptr);
 
-}  // namespace planemap
+}  // namespace planemap::sensor

@@ -12,7 +12,7 @@
 #include "sensor/jpeg.hpp"
 #include "sensor/png.hpp"
 
-namespace planemap {
+namespace planemap::sensor {
 
 namespace fs = std::filesystem;
 
@@ -192,4 +192,4 @@ bool Dataset::read_color(const ListedImage& image, SensorFrame& frame) const {
     return !end_missing;
 }
 
-}  // namespace planemap
+}  // namespace planemap::sensor

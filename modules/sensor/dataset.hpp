@@ -7,7 +7,7 @@
 #include "sensor/image_list.hpp"
 #include "sensor/source.hpp"
 
-namespace planemap {
+namespace planemap::sensor {
 
 /// A folder in the layout of the TUM RGB-D benchmark: depth.txt, rgb.txt (optional), associations.txt
 /// (optional; its pairs are then the frames), camera.json (see camera_of_folder()), and the images they name:
@@ -39,4 +39,4 @@ class Dataset : public FrameSource {
     std::size_t next_ = 0;
 };
 
-}  // namespace planemap
+}  // namespace planemap::sensor

@@ -11,7 +11,7 @@
 #include "core/stamp.hpp"
 #include "core/text_file.hpp"
 
-namespace planemap {
+namespace planemap::sensor {
 
 namespace fs = std::filesystem;
 
@@ -261,4 +261,4 @@ std::string left_over(const std::vector<ListedFrame>& frames, const std::vector<
     return text;
 }
 
-}  // namespace planemap
+}  // namespace planemap::sensor

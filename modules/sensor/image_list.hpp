@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace planemap {
+namespace planemap::sensor {
 
 /// One line of rgb.txt or depth.txt.
 struct ListedImage {
@@ -50,4 +50,4 @@ std::vector<ListedFrame> associate(const std::vector<ListedImage>& depth,
 std::string left_over(const std::vector<ListedFrame>& frames, const std::vector<ListedImage>& color,
                       std::int64_t max_gap_us);
 
-}  // namespace planemap
+}  // namespace planemap::sensor

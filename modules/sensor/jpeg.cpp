@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace planemap {
+namespace planemap::sensor {
 
 bool is_jpeg(std::string_view bytes) {
     return bytes.starts_with("\xff\xd8\xff");
@@ -33,4 +33,4 @@ void check_jpeg(std::string_view bytes, int width, int height) {
     }
 }
 
-}  // namespace planemap
+}  // namespace planemap::sensor

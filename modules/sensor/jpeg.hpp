@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-namespace planemap {
+namespace planemap::sensor {
 
 /// True when the bytes start as a JPEG does.
 bool is_jpeg(std::string_view bytes);
@@ -13,4 +13,4 @@ bool is_jpeg(std::string_view bytes);
 /// Damage within the compressed data shows only when it is decoded.
 void check_jpeg(std::string_view bytes, int width, int height);
 
-}  // namespace planemap
+}  // namespace planemap::sensor

@@ -9,7 +9,7 @@
 
 #include "core/text_file.hpp"
 
-namespace planemap {
+namespace planemap::sensor {
 
 namespace {
 
@@ -89,4 +89,4 @@ json read_json_object(const std::filesystem::path& file) {
     }
 }
 
-}  // namespace planemap
+}  // namespace planemap::sensor

@@ -10,7 +10,7 @@
 
 #include "core/files.hpp"
 
-namespace planemap {
+namespace planemap::sensor {
 
 namespace {
 
@@ -137,4 +137,4 @@ void write_color_png(const std::filesystem::path& file, const RgbImage& color) {
     write_png(file, color, SPNG_COLOR_TYPE_TRUECOLOR, 8);
 }
 
-}  // namespace planemap
+}  // namespace planemap::sensor

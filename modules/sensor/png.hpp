@@ -8,7 +8,7 @@
 
 #include "core/image.hpp"
 
-namespace planemap {
+namespace planemap::sensor {
 
 /// Longest side of an image that is read.
 inline constexpr int kMaxImageSide = 8192;
@@ -35,4 +35,4 @@ void write_depth_png(const std::filesystem::path& file, const DepthImage& depth)
 /// Writes an 8-bit RGB PNG. Throws std::runtime_error naming the file.
 void write_color_png(const std::filesystem::path& file, const RgbImage& color);
 
-}  // namespace planemap
+}  // namespace planemap::sensor

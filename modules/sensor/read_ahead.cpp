@@ -7,7 +7,7 @@
 #include <thread>
 #include <utility>
 
-namespace planemap {
+namespace planemap::sensor {
 
 /// Shared with the thread, which may outlive the ReadAhead.
 struct ReadAhead::State {
@@ -72,4 +72,4 @@ std::optional<ReadAhead::Item> ReadAhead::take(std::chrono::milliseconds wait) {
     return taken;
 }
 
-}  // namespace planemap
+}  // namespace planemap::sensor

@@ -7,7 +7,7 @@
 
 #include "sensor/source.hpp"
 
-namespace planemap {
+namespace planemap::sensor {
 
 /// Reads a source on a thread of its own, one frame ahead, so that who publishes the frames never waits for a
 /// disk or a camera.
@@ -35,4 +35,4 @@ class ReadAhead {
     std::shared_ptr<State> state_;
 };
 
-}  // namespace planemap
+}  // namespace planemap::sensor

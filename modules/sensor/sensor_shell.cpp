@@ -11,7 +11,7 @@
 #include "messages/channels.hpp"
 #include "messages/frame_decoder.hpp"
 
-namespace planemap {
+namespace planemap::sensor {
 
 namespace {
 constexpr std::int64_t kCameraPeriodUs = 1000000;
@@ -25,8 +25,8 @@ void SensorShellOptions::validate() const {
     errors.throw_if_any();
 }
 
-SensorShell::SensorShell(Bus& bus, std::unique_ptr<FrameSource> source, SensorShellOptions options)
-    : bus_(bus), source_(std::move(source)), options_(options), last_camera_wall_us_(now_us()) {
+SensorShell::SensorShell(messages::Bus& bus, std::unique_ptr<FrameSource> source, SensorShellOptions options)
+    : bus_(bus), source_(std::move(source)), options_(options), last_camera_wall_us_(messages::now_us()) {
     options_.validate();
     for (const std::string& note : source_->notes()) spdlog::warn("{}", note);
     if (options_.live) ahead_ = std::make_unique<ReadAhead>(source_);
@@ -84,7 +84,7 @@ SensorShell::Read SensorShell::read() {
 }
 
 int SensorShell::poll() {
-    const std::int64_t now = now_us();
+    const std::int64_t now = messages::now_us();
     if (!bus_.connected()) {  // a recording waits for those who listen
         if (disconnected_us_ == 0) disconnected_us_ = now;
         return 100;
@@ -97,7 +97,7 @@ int SensorShell::poll() {
         if (got != Read::kFrame) return got == Read::kEnd ? -1 : 0;
         pending_ = true;
         if (start_wall_us_ == 0) {
-            start_wall_us_ = now_us();
+            start_wall_us_ = messages::now_us();
             start_utime_ = frame_.utime;
         }
     }
@@ -107,7 +107,7 @@ int SensorShell::poll() {
     } else if (options_.speed > 0) {
         due_us += std::llround(static_cast<double>(frame_.utime - start_utime_) / options_.speed);
     }
-    const std::int64_t early_us = due_us - now_us();
+    const std::int64_t early_us = due_us - messages::now_us();
     if (early_us > 500) return static_cast<int>(std::clamp<std::int64_t>(early_us / 1000, 1, 100));
     publish(frame_);
     pending_ = false;
@@ -116,48 +116,50 @@ int SensorShell::poll() {
 
 void SensorShell::finish() {
     if (!ended_ || frames_ > 0) return;
-    status_.publish_if_due(bus_, now_us(), true);
+    status_.publish_if_due(bus_, messages::now_us(), true);
     throw std::runtime_error("none of the " + std::to_string(broken_) +
                              " frames could be read; the first: " + first_fault_);
 }
 
 /// True a second after the camera was told last: live by the wall clock, else by the stamps of the frames.
 bool SensorShell::camera_is_due(std::int64_t utime) const {
-    if (options_.live) return now_us() - last_camera_wall_us_ >= kCameraPeriodUs;
+    if (options_.live) return messages::now_us() - last_camera_wall_us_ >= kCameraPeriodUs;
     return std::abs(utime - last_camera_utime_) >= kCameraPeriodUs;
 }
 
 void SensorShell::publish_camera(std::int64_t utime) {
-    bus_.publish(channels::kCameraInfo, to_message(source_->camera(), utime, camera_seq_++));
+    bus_.publish(messages::channels::kCameraInfo,
+                 messages::to_message(source_->camera(), utime, camera_seq_++));
     last_camera_utime_ = utime;
-    last_camera_wall_us_ = now_us();
+    last_camera_wall_us_ = messages::now_us();
 }
 
 void SensorShell::publish(const SensorFrame& frame) {
-    const ModuleStatus::Work work(status_);
+    const messages::ModuleStatus::Work work(status_);
     if (camera_seq_ == 0 || camera_is_due(frame.utime)) publish_camera(frame.utime);
     bot_core::images_t images;
     images.utime = frame.utime;
     const CameraInfo& camera = source_->camera();
     if (!frame.color_jpeg.empty()) {
         images.image_types.push_back(bot_core::images_t::LEFT);
-        images.images.push_back(
-            jpeg_image_message(frame.color_jpeg, camera.color.width, camera.color.height, frame.color_utime));
+        images.images.push_back(messages::jpeg_image_message(frame.color_jpeg, camera.color.width,
+                                                             camera.color.height, frame.color_utime));
     } else if (!frame.color.empty()) {
         images.image_types.push_back(bot_core::images_t::LEFT);
-        images.images.push_back(color_image_message(
+        images.images.push_back(messages::color_image_message(
             frame.color, frame.color_utime,
-            options_.color == "jpeg" ? ColorEncoding::kJpeg : ColorEncoding::kRaw, options_.jpeg_quality));
+            options_.color == "jpeg" ? messages::ColorEncoding::kJpeg : messages::ColorEncoding::kRaw,
+            options_.jpeg_quality));
     }
     const bool zipped = options_.depth == "zipped";
     images.image_types.push_back(zipped ? std::int16_t{bot_core::images_t::DEPTH_MM_ZIPPED}
                                         : std::int16_t{bot_core::images_t::DEPTH_MM});
-    images.images.push_back(
-        depth_image_message(frame.depth, frame.utime, zipped ? DepthEncoding::kZipped : DepthEncoding::kRaw));
-    set_seq(images.images.back(), static_cast<std::uint32_t>(frames_));
-    if (sender_) set_sender(images.images.back(), *sender_);
+    images.images.push_back(messages::depth_image_message(
+        frame.depth, frame.utime, zipped ? messages::DepthEncoding::kZipped : messages::DepthEncoding::kRaw));
+    messages::set_seq(images.images.back(), static_cast<std::uint32_t>(frames_));
+    if (sender_) messages::set_sender(images.images.back(), *sender_);
     images.n_images = static_cast<std::int32_t>(images.images.size());
-    bus_.publish(channels::kFrame, images);
+    bus_.publish(messages::channels::kFrame, images);
     last_utime_ = frame.utime;
     ++frames_;
     status_.published();
@@ -181,4 +183,4 @@ OptionList encoding_of(SensorShellOptions& options) {
     return list;
 }
 
-}  // namespace planemap
+}  // namespace planemap::sensor

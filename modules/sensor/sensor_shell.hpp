@@ -9,7 +9,7 @@
 #include "sensor/read_ahead.hpp"
 #include "sensor/source.hpp"
 
-namespace planemap {
+namespace planemap::sensor {
 
 /// Options of SensorShell; pacing_of() and encoding_of() say what each is.
 struct SensorShellOptions {
@@ -28,11 +28,11 @@ struct SensorShellOptions {
 
 /// Publishes a source's frames (OPENNI_FRAME) and its camera (PLANEMAP_CAMERA_INFO at the start and once a
 /// second). A fault of the source is logged when it is first seen, and counted.
-class SensorShell : public Shell {
+class SensorShell : public messages::Shell {
   public:
-    SensorShell(Bus& bus, std::unique_ptr<FrameSource> source, SensorShellOptions options);
+    SensorShell(messages::Bus& bus, std::unique_ptr<FrameSource> source, SensorShellOptions options);
 
-    ModuleStatus& status() override { return status_; }
+    messages::ModuleStatus& status() override { return status_; }
     /// Reads the next frame, or publishes it if it is due; negative at the end of the source. Without a
     /// connection nothing is read: a recording goes on when there is one.
     int poll() override;
@@ -61,11 +61,11 @@ class SensorShell : public Shell {
     void count(const ReadResult& result);
     void complain(const std::string& what, const ReadResult& result);
 
-    Bus& bus_;
+    messages::Bus& bus_;
     std::shared_ptr<FrameSource> source_;
     SensorShellOptions options_;
     std::unique_ptr<ReadAhead> ahead_;  ///< only live
-    ModuleStatus status_{"sensor"};
+    messages::ModuleStatus status_{"sensor"};
     std::optional<std::uint64_t> sender_;  ///< tells this sender from another; none in one process, where a
                                            ///< run gives the same bytes again
     SensorFrame frame_;
@@ -83,4 +83,4 @@ OptionList pacing_of(SensorShellOptions& options);
 /// color, depth and jpeg_quality. Refers to `options`, which must outlive it.
 OptionList encoding_of(SensorShellOptions& options);
 
-}  // namespace planemap
+}  // namespace planemap::sensor

@@ -11,7 +11,7 @@
 #include "sensor/dataset.hpp"
 #include "simulator/simulated_source.hpp"
 
-namespace planemap {
+namespace planemap::sensor {
 
 namespace {
 
@@ -54,4 +54,4 @@ std::unique_ptr<FrameSource> open_source(const std::string& input, const SourceO
     return std::make_unique<Dataset>(input, options);
 }
 
-}  // namespace planemap
+}  // namespace planemap::sensor

@@ -7,7 +7,7 @@
 #include "core/frame_range.hpp"
 #include "core/frame_source.hpp"
 
-namespace planemap {
+namespace planemap::sensor {
 
 /// How an input is read.
 struct SourceOptions {
@@ -23,4 +23,4 @@ struct SourceOptions {
 /// std::invalid_argument for a bad camera.json or simulator name.
 std::unique_ptr<FrameSource> open_source(const std::string& input, const SourceOptions& options = {});
 
-}  // namespace planemap
+}  // namespace planemap::sensor

@@ -27,14 +27,14 @@ Keyframe keyframe(int id, std::int64_t utime) {
 }
 
 TEST(TruePoses, AreInterpolatedAndNeverInvented) {
-    EXPECT_TRUE(given_pose(path(), 80000)->isApprox(pose_of(0.2)));
-    EXPECT_TRUE(given_pose(path(), 100000)->isApprox(pose_of(0.25), 1e-6));
-    EXPECT_FALSE(given_pose(path(), -1));
-    EXPECT_FALSE(given_pose(path(), 400001));
-    EXPECT_FALSE(given_pose({}, 0));
+    EXPECT_TRUE(pipeline::given_pose(path(), 80000)->isApprox(pose_of(0.2)));
+    EXPECT_TRUE(pipeline::given_pose(path(), 100000)->isApprox(pose_of(0.25), 1e-6));
+    EXPECT_FALSE(pipeline::given_pose(path(), -1));
+    EXPECT_FALSE(pipeline::given_pose(path(), 400001));
+    EXPECT_FALSE(pipeline::given_pose({}, 0));
     Trajectory gap = path();
     gap.erase(gap.begin() + 3, gap.begin() + 6);
-    EXPECT_FALSE(given_pose(gap, 120000));
+    EXPECT_FALSE(pipeline::given_pose(gap, 120000));
 }
 
 TEST(TruePoses, OfKeyframesThatHaveOne) {

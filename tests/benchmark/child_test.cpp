@@ -24,9 +24,10 @@ TEST(Child, CountsItsOwnTimeAndMemory) {
     const ChildResult idle = run_in_child([]() -> nlohmann::json { return 1; });
     const ChildResult busy = run_in_child([]() -> nlohmann::json {
         std::vector<char> block(200u << 20, 1);
-        const double start_ms = thread_cpu_ms();
+        const double start_ms = messages::thread_cpu_ms();
         std::size_t sum = 0;
-        while (thread_cpu_ms() - start_ms < 200) sum += static_cast<std::size_t>(block[sum % block.size()]);
+        while (messages::thread_cpu_ms() - start_ms < 200)
+            sum += static_cast<std::size_t>(block[sum % block.size()]);
         return sum;
     });
     EXPECT_GT(busy.cpu_s, 0.19);

@@ -10,7 +10,7 @@
 #include "graph/place_index.hpp"
 #include "graph/synthetic.hpp"
 
-namespace planemap {
+namespace planemap::graph {
 namespace {
 
 using namespace planemap::test;
@@ -228,7 +228,7 @@ void time_index(int count) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::graph
 
 int main(int argc, char** argv) {
     const int keyframes = argc > 1 ? std::atoi(argv[1]) : 2000;

@@ -7,7 +7,7 @@
 #include "graph/synthetic.hpp"
 #include "graph/topology.hpp"
 
-namespace planemap::test {
+namespace planemap::graph::test {
 
 /// A keyframe that saw nothing.
 inline graph::KeyframeNode bare_node(int id, const Pose& odom_from_camera = Pose::Identity()) {
@@ -39,4 +39,4 @@ inline GraphParts parts_of(const Walk& walk) {
     return parts;
 }
 
-}  // namespace planemap::test
+}  // namespace planemap::graph::test

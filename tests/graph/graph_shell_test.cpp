@@ -7,14 +7,14 @@
 #include "graph/synthetic.hpp"
 #include "shell_fixture.hpp"
 
-namespace planemap {
+namespace planemap::graph {
 namespace {
 
 class GraphShellTest : public test::ShellTest {};
 
 TEST_F(GraphShellTest, PublishesTheTrajectoryAmongCorruptMessages) {
     GraphShell shell(bus_, {});
-    const auto trajectories = collect<trajectory_t>(channels::kTrajectory);
+    const auto trajectories = collect<trajectory_t>(messages::channels::kTrajectory);
     Keyframe keyframe;
     keyframe.covariance = Matrix6d::Identity() * 1e-4;
     for (int id = 0; id < 3; ++id) {
@@ -23,13 +23,14 @@ TEST_F(GraphShellTest, PublishesTheTrajectoryAmongCorruptMessages) {
         keyframe.utime = keyframe.pose_utime = 1000 * id;
         keyframe.odom_from_camera.translation().x() = 0.1 * id;
         keyframe.previous_from_camera.translation().x() = id == 0 ? 0 : 0.1;
-        publish_corrupt(channels::kKeyframe, to_message(keyframe, id));
-        bus_.publish(channels::kKeyframe, to_message(keyframe, id));
+        publish_corrupt(messages::channels::kKeyframe, messages::to_message(keyframe, id));
+        bus_.publish(messages::channels::kKeyframe, messages::to_message(keyframe, id));
     }
-    bus_.publish(channels::kKeyframe, to_message(keyframe, 3));  // the same id and time again: refused
+    bus_.publish(messages::channels::kKeyframe,
+                 messages::to_message(keyframe, 3));  // the same id and time again: refused
     bus_.drain();
     ASSERT_EQ(trajectories->size(), 3u);
-    const KeyframeTrajectory last = from_message(trajectories->back());
+    const KeyframeTrajectory last = messages::from_message(trajectories->back());
     ASSERT_EQ(last.keyframes.size(), 3u);
     EXPECT_NEAR(last.keyframes[2].world_from_camera.translation().x(), 0.2, 1e-9);
     EXPECT_EQ(shell.status().decode_error_count(), 3 * kCorrupt);
@@ -40,9 +41,9 @@ TEST_F(GraphShellTest, TheLastTrajectoryIsRepeatedForThoseWhoComeLate) {
     GraphShell shell(bus_, {});
     Keyframe keyframe;
     keyframe.id = 0;
-    bus_.publish(channels::kKeyframe, to_message(keyframe, 0));
+    bus_.publish(messages::channels::kKeyframe, messages::to_message(keyframe, 0));
     bus_.drain();
-    const auto late = collect<trajectory_t>(channels::kTrajectory);
+    const auto late = collect<trajectory_t>(messages::channels::kTrajectory);
     shell.poll();
     bus_.drain();
     EXPECT_TRUE(late->empty());
@@ -62,7 +63,7 @@ TEST_F(GraphShellTest, AnotherOdometrysKeyframesAreCountedAndNotUsed) {
         keyframe.id = id;
         keyframe.utime = keyframe.pose_utime = 1000000 * id;
         keyframe.odom_from_camera.translation().x() = x;
-        bus_.publish(channels::kKeyframe, to_message(keyframe, seq));
+        bus_.publish(messages::channels::kKeyframe, messages::to_message(keyframe, seq));
         bus_.drain();
     };
     for (int i = 0; i < 10; ++i) publish(i, 100 + i, 0.1 * i);
@@ -85,7 +86,7 @@ TEST_F(GraphShellTest, AnOdometryThatStartedAgainIsNotTakenForTheFirst) {
     const auto publish = [&](int id) {
         keyframe.id = id;
         keyframe.utime = keyframe.pose_utime += 1000000;
-        bus_.publish(channels::kKeyframe, to_message(keyframe, seq++));
+        bus_.publish(messages::channels::kKeyframe, messages::to_message(keyframe, seq++));
         bus_.drain();
     };
     for (int id = 0; id < 6; ++id) publish(id);
@@ -104,7 +105,7 @@ TEST_F(GraphShellTest, SaysThatAPartBegins) {
         keyframe.id = id;
         keyframe.previous_id = id == 2 ? -1 : id - 1;
         keyframe.utime = keyframe.pose_utime = 1000000 * (id + 1);
-        bus_.publish(channels::kKeyframe, to_message(keyframe, id));
+        bus_.publish(messages::channels::kKeyframe, messages::to_message(keyframe, id));
         bus_.drain();
         EXPECT_EQ(shell.status().remarks().size(), id < 2 ? 0u : 1u) << id;
     }
@@ -115,7 +116,7 @@ TEST_F(GraphShellTest, SaysThatAPartBegins) {
 
 TEST_F(GraphShellTest, WhatItLeavesOutIsCounted) {
     GraphShell shell(bus_, {});
-    const auto trajectories = collect<trajectory_t>(channels::kTrajectory);
+    const auto trajectories = collect<trajectory_t>(messages::channels::kTrajectory);
     Keyframe keyframe;
     keyframe.covariance = Matrix6d::Identity() * 1e-4;
     keyframe.features.resize(5);  // all at the camera's centre
@@ -123,7 +124,7 @@ TEST_F(GraphShellTest, WhatItLeavesOutIsCounted) {
     const auto publish = [&](int id) {
         keyframe.id = id;
         keyframe.utime = keyframe.pose_utime += 1000000;
-        bus_.publish(channels::kKeyframe, to_message(keyframe, seq++));
+        bus_.publish(messages::channels::kKeyframe, messages::to_message(keyframe, seq++));
         bus_.drain();
     };
     for (const int id : {3, 4, 2147483647, 5, 0, 1, 6}) publish(id);
@@ -142,13 +143,13 @@ TEST_F(GraphShellTest, TheBackgroundComesToTheSameTrajectory) {
     const test::Walk walk = test::walk(room, test::square_loop(3, 12, 1.2), random);
     PoseGraph alone;
     GraphShell shell(bus_, {}, Optimising::kInBackground);
-    const auto trajectories = collect<trajectory_t>(channels::kTrajectory);
+    const auto trajectories = collect<trajectory_t>(messages::channels::kTrajectory);
     for (const Keyframe& keyframe : walk.keyframes) {
         alone.add(keyframe);
         shell.poll();
-        bus_.publish(channels::kKeyframe, to_message(keyframe, keyframe.id));
+        bus_.publish(messages::channels::kKeyframe, messages::to_message(keyframe, keyframe.id));
         bus_.drain();
-        const KeyframeTrajectory newest = from_message(trajectories->back());
+        const KeyframeTrajectory newest = messages::from_message(trajectories->back());
         ASSERT_EQ(newest.keyframes.size(), static_cast<std::size_t>(keyframe.id) + 1)
             << "a keyframe does not wait for the optimisation";
         EXPECT_TRUE((newest.world_from_odom * keyframe.odom_from_camera)
@@ -158,7 +159,7 @@ TEST_F(GraphShellTest, TheBackgroundComesToTheSameTrajectory) {
     shell.finish();
     bus_.drain();
     EXPECT_GT(shell.graph().trajectory().loop_closures, 3);
-    const KeyframeTrajectory last = from_message(trajectories->back());
+    const KeyframeTrajectory last = messages::from_message(trajectories->back());
     for (std::size_t i = 0; i < walk.keyframes.size(); ++i) {
         EXPECT_LT((last.keyframes[i].world_from_camera.translation() -
                    alone.trajectory().keyframes[i].world_from_camera.translation())
@@ -173,10 +174,10 @@ TEST_F(GraphShellTest, EndsWhileTheBackgroundIsAtWork) {
     const test::Walk walk = test::walk(room, test::square_loop(3, 12, 1.1), random);
     GraphShell shell(bus_, {}, Optimising::kInBackground);
     for (const Keyframe& keyframe : walk.keyframes)
-        bus_.publish(channels::kKeyframe, to_message(keyframe, keyframe.id));
+        bus_.publish(messages::channels::kKeyframe, messages::to_message(keyframe, keyframe.id));
     bus_.drain();
     EXPECT_EQ(shell.graph().trajectory().keyframes.size(), walk.keyframes.size());
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::graph

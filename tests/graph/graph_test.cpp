@@ -9,7 +9,7 @@
 
 #include "graph/synthetic.hpp"
 
-namespace planemap {
+namespace planemap::graph {
 namespace {
 
 using namespace planemap::test;
@@ -566,4 +566,4 @@ TEST_F(GraphTest, EveryBadOptionIsNamed) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::graph

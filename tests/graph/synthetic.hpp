@@ -8,7 +8,7 @@
 #include "core/keyframe.hpp"
 #include "core/random_values.hpp"
 
-namespace planemap::test {
+namespace planemap::graph::test {
 
 struct Landmark {
     Eigen::Vector3d position;
@@ -144,4 +144,4 @@ inline std::vector<Pose> square_loop(double side, int steps_a_side, double laps,
     return poses;
 }
 
-}  // namespace planemap::test
+}  // namespace planemap::graph::test

@@ -59,11 +59,11 @@ TEST_F(MapFile, ComesBack) {
 TEST_F(MapFile, OfALogWithOtherThingsTheNewestMapIsRead) {
     PlaneMap newer = map();
     newer.utime = 100;
-    LogEvent other;
+    messages::LogEvent other;
     other.channel = "SOMETHING";
     other.bytes = {1, 2, 3};
-    write_file(file_,
-               plane_map_log(map()) + encode_event(other) + plane_map_log(newer) + encode_event(other));
+    write_file(file_, plane_map_log(map()) + messages::encode_event(other) + plane_map_log(newer) +
+                          messages::encode_event(other));
     EXPECT_EQ(read_plane_map(file_).utime, 100);
 }
 

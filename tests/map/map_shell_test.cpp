@@ -35,24 +35,24 @@ TEST_F(MapShellTest, PublishesTheMapAmongCorruptMessagesAndWritesItAsALog) {
     MapShellOptions options;
     options.output = folder_;
     MapShell shell(bus_, options);
-    const auto maps = collect<plane_map_t>(channels::kMap);
+    const auto maps = collect<plane_map_t>(messages::channels::kMap);
     const Keyframe keyframe = test::sample_keyframe();
-    publish_corrupt(channels::kKeyframe, to_message(keyframe, 0));
-    publish_corrupt(channels::kTrajectory, to_message(trajectory(), 0));
-    bus_.publish(channels::kKeyframe, to_message(keyframe, 0));
-    bus_.publish(channels::kTrajectory, to_message(trajectory(), 0));
+    publish_corrupt(messages::channels::kKeyframe, messages::to_message(keyframe, 0));
+    publish_corrupt(messages::channels::kTrajectory, messages::to_message(trajectory(), 0));
+    bus_.publish(messages::channels::kKeyframe, messages::to_message(keyframe, 0));
+    bus_.publish(messages::channels::kTrajectory, messages::to_message(trajectory(), 0));
     bus_.drain();
     shell.finish();
     ASSERT_EQ(maps->size(), 1u);
-    const PlaneMap map = from_message(maps->back());
+    const PlaneMap map = messages::from_message(maps->back());
     EXPECT_EQ(map.planes.size(), 2u);  // two walls a metre apart
     EXPECT_EQ(shell.status().decode_error_count(), 2 * kCorrupt);
 
-    LogReader log(folder_ / "plane_map.lcmlog");
-    LogEvent event;
+    messages::LogReader log(folder_ / "plane_map.lcmlog");
+    messages::LogEvent event;
     ASSERT_TRUE(log.next(event));
-    EXPECT_EQ(event.channel, channels::kMap);
-    EXPECT_EQ(from_message(decode<plane_map_t>(event.bytes)).planes.size(), 2u);
+    EXPECT_EQ(event.channel, messages::channels::kMap);
+    EXPECT_EQ(messages::from_message(messages::decode<plane_map_t>(event.bytes)).planes.size(), 2u);
     EXPECT_FALSE(log.next(event));
 }
 
@@ -61,8 +61,8 @@ TEST_F(MapShellTest, StartsFromAMapAndKeepsAnEarlierOneUntilItHasOne) {
     options.output = folder_;
     {
         MapShell shell(bus_, options);
-        bus_.publish(channels::kKeyframe, to_message(test::sample_keyframe(), 0));
-        bus_.publish(channels::kTrajectory, to_message(trajectory(), 0));
+        bus_.publish(messages::channels::kKeyframe, messages::to_message(test::sample_keyframe(), 0));
+        bus_.publish(messages::channels::kTrajectory, messages::to_message(trajectory(), 0));
         bus_.drain();
         shell.finish();
     }
@@ -88,10 +88,10 @@ TEST_F(MapShellTest, AnEarlierMapIsKeptAndAnEmptyOneDoesNotReplaceIt) {
     const std::filesystem::path file = folder_ / "plane_map.lcmlog";
     std::filesystem::create_directories(folder_);
     PlaneMap earlier = [&] {
-        Bus bus("memq://");
+        messages::Bus bus("memq://");
         MapShell shell(bus, {});
-        bus.publish(channels::kKeyframe, to_message(test::sample_keyframe(), 0));
-        bus.publish(channels::kTrajectory, to_message(trajectory(), 0));
+        bus.publish(messages::channels::kKeyframe, messages::to_message(test::sample_keyframe(), 0));
+        bus.publish(messages::channels::kTrajectory, messages::to_message(trajectory(), 0));
         bus.drain();
         return shell.mapper().map();
     }();
@@ -104,14 +104,15 @@ TEST_F(MapShellTest, AnEarlierMapIsKeptAndAnEmptyOneDoesNotReplaceIt) {
         return found;
     };
     MapShell shell(bus_, options);
-    bus_.publish(channels::kTrajectory, to_message(trajectory(), 1));  // a map without planes
+    bus_.publish(messages::channels::kTrajectory,
+                 messages::to_message(trajectory(), 1));  // a map without planes
     bus_.drain();
     shell.finish();
     EXPECT_EQ(read_plane_map(file).utime, 42);
     EXPECT_TRUE(kept().empty());
 
-    bus_.publish(channels::kKeyframe, to_message(test::sample_keyframe(), 0));
-    bus_.publish(channels::kTrajectory, to_message(trajectory(), 2));
+    bus_.publish(messages::channels::kKeyframe, messages::to_message(test::sample_keyframe(), 0));
+    bus_.publish(messages::channels::kTrajectory, messages::to_message(trajectory(), 2));
     bus_.drain();
     for (int i = 0; i < 2; ++i) shell.finish();
     EXPECT_NE(read_plane_map(file).utime, 42);
@@ -140,10 +141,10 @@ TEST_F(MapShellTest, AFullDiskOrALostFolderEndsNothingAndTheMapIsWrittenWhenItCa
     options.output = folder_;
     const std::filesystem::path file = folder_ / "plane_map.lcmlog";
     MapShell shell(bus_, options);
-    const auto maps = collect<plane_map_t>(channels::kMap);
+    const auto maps = collect<plane_map_t>(messages::channels::kMap);
     const std::string empty = read_file(file);
-    bus_.publish(channels::kKeyframe, to_message(test::sample_keyframe(), 0));
-    bus_.publish(channels::kTrajectory, to_message(trajectory(), 0));
+    bus_.publish(messages::channels::kKeyframe, messages::to_message(test::sample_keyframe(), 0));
+    bus_.publish(messages::channels::kTrajectory, messages::to_message(trajectory(), 0));
     {
         const FullDisk full;
         bus_.drain();
@@ -186,11 +187,12 @@ TEST_F(MapShellTest, ADiskThatIsFullAtTheStartIsOutlived) {
 
 TEST_F(MapShellTest, TheLastMapIsRepeatedAndARepeatedTrajectoryIsNoWork) {
     MapShell shell(bus_, {});
-    bus_.publish(channels::kKeyframe, to_message(test::sample_keyframe(), 0));
-    bus_.publish(channels::kTrajectory, to_message(trajectory(), 0));
+    bus_.publish(messages::channels::kKeyframe, messages::to_message(test::sample_keyframe(), 0));
+    bus_.publish(messages::channels::kTrajectory, messages::to_message(trajectory(), 0));
     bus_.drain();
-    const auto late = collect<plane_map_t>(channels::kMap);
-    for (int i = 0; i < 3; ++i) bus_.publish(channels::kTrajectory, to_message(trajectory(), 0));
+    const auto late = collect<plane_map_t>(messages::channels::kMap);
+    for (int i = 0; i < 3; ++i)
+        bus_.publish(messages::channels::kTrajectory, messages::to_message(trajectory(), 0));
     bus_.drain();
     EXPECT_TRUE(late->empty());
     EXPECT_EQ(shell.status().work_ms().count(), 1);
@@ -206,8 +208,8 @@ TEST_F(MapShellTest, AMapThatWasStartedAgainSaysWhatItLacks) {
     MapShell shell(bus_, {});
     KeyframeTrajectory all = trajectory();
     all.keyframes.insert(all.keyframes.begin(), {{0, 1000, Pose::Identity()}, {2, 2000, Pose::Identity()}});
-    bus_.publish(channels::kKeyframe, to_message(test::sample_keyframe(), 0));
-    bus_.publish(channels::kTrajectory, to_message(all, 0));
+    bus_.publish(messages::channels::kKeyframe, messages::to_message(test::sample_keyframe(), 0));
+    bus_.publish(messages::channels::kTrajectory, messages::to_message(all, 0));
     bus_.drain();
     std::this_thread::sleep_for(std::chrono::milliseconds(1050));
     shell.poll();
@@ -220,14 +222,14 @@ TEST_F(MapShellTest, AMapThatWasStartedAgainSaysWhatItLacks) {
 TEST_F(MapShellTest, AnotherOdometrysKeyframeWithAKnownIdIsNotUsed) {
     MapShell shell(bus_, {});
     Keyframe keyframe = test::sample_keyframe();
-    bus_.publish(channels::kKeyframe, to_message(keyframe, 0));
-    bus_.publish(channels::kTrajectory, to_message(trajectory(), 0));
+    bus_.publish(messages::channels::kKeyframe, messages::to_message(keyframe, 0));
+    bus_.publish(messages::channels::kTrajectory, messages::to_message(trajectory(), 0));
     bus_.drain();
     ASSERT_EQ(shell.mapper().map().planes.size(), 2u);
     keyframe.utime += 5000000;
     keyframe.regions.clear();
     keyframe.features.clear();
-    bus_.publish(channels::kKeyframe, to_message(keyframe, 1));
+    bus_.publish(messages::channels::kKeyframe, messages::to_message(keyframe, 1));
     bus_.drain();
     EXPECT_EQ(shell.mapper().map().planes.size(), 2u);
     EXPECT_EQ(shell.status().losses().at("keyframes of another odometry, with an id that is taken"), 1);
@@ -237,13 +239,13 @@ TEST_F(MapShellTest, WhatItLeavesOutIsCounted) {
     MapShell shell(bus_, {});
     Keyframe keyframe = test::sample_keyframe();
     keyframe.regions[0].box.half_extents.x() = 300;  // nobody sees that far
-    bus_.publish(channels::kKeyframe, to_message(keyframe, 0));
+    bus_.publish(messages::channels::kKeyframe, messages::to_message(keyframe, 0));
     keyframe.id = 2147483647;
     keyframe.utime += 1000000;
-    bus_.publish(channels::kKeyframe, to_message(keyframe, 1));
+    bus_.publish(messages::channels::kKeyframe, messages::to_message(keyframe, 1));
     KeyframeTrajectory far = trajectory();
     far.keyframes[0].world_from_camera.translation().x() = 2e5;
-    bus_.publish(channels::kTrajectory, to_message(far, 0));
+    bus_.publish(messages::channels::kTrajectory, messages::to_message(far, 0));
     bus_.drain();
     const auto& losses = shell.status().losses();
     EXPECT_EQ(losses.at("regions that are none, or larger or farther than can be seen"), 1);

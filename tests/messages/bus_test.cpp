@@ -21,7 +21,7 @@
 #include "messages/sample_messages.hpp"
 #include "messages/tcpq_server.hpp"
 
-namespace planemap {
+namespace planemap::messages {
 namespace {
 
 TEST(Bus, DeliversInOrderAndDropsNothingOnMemq) {
@@ -366,4 +366,4 @@ TEST(Bus, AdviceNamesTheSysctl) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::messages

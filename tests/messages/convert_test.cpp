@@ -9,7 +9,7 @@
 #include "core/stamp.hpp"
 #include "messages/sample_messages.hpp"
 
-namespace planemap {
+namespace planemap::messages {
 namespace {
 
 using test::sample_keyframe;
@@ -270,4 +270,4 @@ TEST(Convert, MapReferencesMustExist) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::messages

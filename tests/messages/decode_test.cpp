@@ -11,7 +11,7 @@
 #include "messages/frame_decoder.hpp"
 #include "messages/sample_messages.hpp"
 
-namespace planemap {
+namespace planemap::messages {
 namespace {
 
 using test::encoded;
@@ -132,4 +132,4 @@ TEST(Decode, HugeLengthIsRefusedBeforeAllocation) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::messages

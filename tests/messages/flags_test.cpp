@@ -8,7 +8,7 @@
 #include "core/version.hpp"
 #include "temporary_folder.hpp"
 
-namespace planemap {
+namespace planemap::messages {
 namespace {
 
 using testing::AllOf;
@@ -229,4 +229,4 @@ TEST(Flags, ValuesAreTyped) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::messages

@@ -9,7 +9,7 @@
 #include "messages/sample_messages.hpp"
 #include "messages/told_status.hpp"
 
-namespace planemap {
+namespace planemap::messages {
 namespace {
 
 using test::encoded;
@@ -291,4 +291,4 @@ TEST(FrameDecoder, FramesThatDoNotAddUpAreErrors) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::messages

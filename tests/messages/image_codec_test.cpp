@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-namespace planemap {
+namespace planemap::messages {
 namespace {
 
 RgbImage gradient(int width, int height) {
@@ -67,4 +67,4 @@ TEST(ImageCodec, ZippedDepthMustFillTheImageExactly) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::messages

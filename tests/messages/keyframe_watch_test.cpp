@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace planemap {
+namespace planemap::messages {
 namespace {
 
 using ::testing::ElementsAre;
@@ -74,4 +74,4 @@ TEST_F(Watch, SaysThatAPartBegins) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::messages

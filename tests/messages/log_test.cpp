@@ -13,7 +13,7 @@
 
 #include "core/files.hpp"
 
-namespace planemap {
+namespace planemap::messages {
 namespace {
 
 class Log : public testing::Test {
@@ -441,4 +441,4 @@ TEST_F(Log, MissingFileNamesIt) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::messages

@@ -8,7 +8,7 @@
 
 #include "messages/decode.hpp"
 
-namespace planemap {
+namespace planemap::messages {
 namespace {
 
 class Status : public testing::Test {
@@ -167,4 +167,4 @@ TEST_F(Status, OnceASecond) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::messages

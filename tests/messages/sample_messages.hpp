@@ -7,7 +7,7 @@
 
 #include "messages/convert.hpp"
 
-namespace planemap::test {
+namespace planemap::messages::test {
 
 inline PlanarRegion sample_region(double offset = 0) {
     PlanarRegion region;
@@ -63,4 +63,4 @@ std::vector<std::uint8_t> encoded(const T& message) {
     return bytes;
 }
 
-}  // namespace planemap::test
+}  // namespace planemap::messages::test

@@ -6,7 +6,7 @@
 #include <map>
 #include <string>
 
-namespace planemap {
+namespace planemap::messages {
 namespace {
 
 using Message = SenderGuard::Message;
@@ -223,4 +223,4 @@ TEST_F(Guard, AnyStampsAreJudgedWithoutOverflow) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::messages

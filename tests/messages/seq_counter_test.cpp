@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace planemap {
+namespace planemap::messages {
 namespace {
 
 SeqCounter counted(const std::vector<std::uint32_t>& seqs) {
@@ -44,4 +44,4 @@ TEST(SeqCounter, ALongOutageIsCountedOnceItIsSure) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::messages

@@ -7,7 +7,7 @@
 
 #include "messages/told_status.hpp"
 
-namespace planemap {
+namespace planemap::messages {
 namespace {
 
 class Admission : public testing::Test {
@@ -74,4 +74,4 @@ TEST_F(Admission, ALateOneIsAdmitted) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::messages

@@ -18,7 +18,7 @@
 #include <thread>
 #include <vector>
 
-namespace planemap::test {
+namespace planemap::messages::test {
 
 class TcpqServer {
   public:
@@ -130,4 +130,4 @@ class TcpqServer {
     std::thread thread_;
 };
 
-}  // namespace planemap::test
+}  // namespace planemap::messages::test

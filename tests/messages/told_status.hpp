@@ -9,7 +9,7 @@
 #include "messages/decode.hpp"
 #include "messages/module_status.hpp"
 
-namespace planemap::test {
+namespace planemap::messages::test {
 
 /// What a status tells on the bus, as the last message of its module.
 inline module_status_t told(ModuleStatus& status) {
@@ -23,4 +23,4 @@ inline module_status_t told(ModuleStatus& status) {
     return told;
 }
 
-}  // namespace planemap::test
+}  // namespace planemap::messages::test

@@ -23,7 +23,7 @@
 #include "messages/decode.hpp"
 #include "octomap/octomap_shell.hpp"
 
-namespace planemap {
+namespace planemap::octomap {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -86,7 +86,8 @@ std::vector<View> make_views() {
             view.world_from_camera.translation().x() += kRoom_m * room;
             view.frame.utime = 0;
             view.frame.image_types = {bot_core::images_t::DEPTH_MM_ZIPPED};
-            view.frame.images = {depth_image_message(depth_at(in_room), 0, DepthEncoding::kZipped)};
+            view.frame.images = {
+                messages::depth_image_message(depth_at(in_room), 0, messages::DepthEncoding::kZipped)};
             view.frame.n_images = 1;
             views.push_back(std::move(view));
         }
@@ -104,16 +105,17 @@ int run(int keyframes, double rate_hz, bool background) {
     const std::vector<View> views = make_views();
     std::printf("%d keyframes at %.0f a second, built in the %s\n", keyframes, rate_hz,
                 background ? "background" : "handler");
-    Bus bus("memq://");
-    auto shell = std::make_unique<OctomapShell>(bus, std::make_shared<FrameDecoder>(bus), OctomapOptions{},
-                                                background ? Building::kInBackground : Building::kInHandler);
+    messages::Bus bus("memq://");
+    auto shell =
+        std::make_unique<OctomapShell>(bus, std::make_shared<messages::FrameDecoder>(bus), OctomapOptions{},
+                                       background ? Building::kInBackground : Building::kInHandler);
     map_size_t last{};
     int states = 0;
-    bus.subscribe(channels::kOctomapSize, [&](const RawMessage& m) {
-        last = decode<map_size_t>(m.bytes);
+    bus.subscribe(messages::channels::kOctomapSize, [&](const messages::RawMessage& m) {
+        last = messages::decode<map_size_t>(m.bytes);
         ++states;
     });
-    bus.publish(channels::kCameraInfo, to_message(camera(), 0, 0));
+    bus.publish(messages::channels::kCameraInfo, messages::to_message(camera(), 0, 0));
     bus.drain();
 
     std::vector<double> handler_ms;
@@ -158,11 +160,11 @@ int run(int keyframes, double rate_hz, bool background) {
         Keyframe keyframe;
         keyframe.id = next.id;
         keyframe.utime = next.id + 1;
-        bus.publish(channels::kFrame, frame);
+        bus.publish(messages::channels::kFrame, frame);
         busy([&] { bus.drain(); });
-        bus.publish(channels::kKeyframe, to_message(keyframe, next.id));
+        bus.publish(messages::channels::kKeyframe, messages::to_message(keyframe, next.id));
         busy([&] { bus.drain(); });
-        bus.publish(channels::kTrajectory, to_message(next.trajectory, next.id));
+        bus.publish(messages::channels::kTrajectory, messages::to_message(next.trajectory, next.id));
         busy([&] { bus.drain(); });
         busy([&] { shell->poll(); });
         bus.drain();
@@ -190,7 +192,7 @@ int run(int keyframes, double rate_hz, bool background) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::octomap
 
 int main(int argc, char** argv) {
     const int keyframes = argc > 1 ? std::atoi(argv[1]) : 3000;

@@ -13,7 +13,7 @@
 #include "core/files.hpp"
 #include "octomap/scenes.hpp"
 
-namespace planemap {
+namespace planemap::octomap {
 namespace {
 
 using ::testing::HasSubstr;
@@ -264,14 +264,14 @@ TEST(OctomapBuilder, SizesAreThoseOfTheFiles) {
     const OctomapSizes sizes = builder.sizes();
     const auto folder = std::filesystem::temp_directory_path() / "planemap_octomap_test";
     std::filesystem::create_directories(folder);
-    octomap::OcTree copy(builder.tree());
+    ::octomap::OcTree copy(builder.tree());
     ASSERT_TRUE(copy.write((folder / "map.ot").string()));
     ASSERT_TRUE(copy.writeBinary((folder / "map.bt").string()));
     EXPECT_EQ(sizes.ot_bytes, std::filesystem::file_size(folder / "map.ot"));
     EXPECT_EQ(sizes.bt_bytes, std::filesystem::file_size(folder / "map.bt"));
     EXPECT_EQ(builder.bt(), read_file(folder / "map.bt"));
     EXPECT_EQ(builder.ot(), read_file(folder / "map.ot"));
-    octomap::OcTree reread(0.1);
+    ::octomap::OcTree reread(0.1);
     ASSERT_TRUE(reread.readBinary((folder / "map.bt").string()));
     EXPECT_EQ(reread.getResolution(), 0.05);
     std::filesystem::remove_all(folder);
@@ -284,7 +284,7 @@ TEST(OctomapBuilder, SizesAreThoseOfTheFiles) {
 
 TEST(OctomapBuilder, OccupiedVoxelsOfPrunedLeavesAreOnTheGrid) {
     OctomapBuilder builder;
-    octomap::OcTree tree(0.05);
+    ::octomap::OcTree tree(0.05);
     // A depth image that fills a thick block, so that eight occupied leaves become one.
     for (int i = 0; i < 12; ++i) {
         DepthImage depth(64, 48, static_cast<std::uint16_t>(1000 + 25 * i));
@@ -362,4 +362,4 @@ TEST(OctomapOptions, NamesAllBadFields) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::octomap

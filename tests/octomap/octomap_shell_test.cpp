@@ -7,7 +7,7 @@
 
 #include "shell_fixture.hpp"
 
-namespace planemap {
+namespace planemap::octomap {
 namespace {
 
 class OctomapShellTest : public test::ShellTest {
@@ -18,14 +18,14 @@ class OctomapShellTest : public test::ShellTest {
             Keyframe keyframe;
             keyframe.id = id;
             keyframe.utime = 1000 * (id + 1);
-            bus_.publish(channels::kFrame, frame(keyframe.utime));
-            bus_.publish(channels::kKeyframe, to_message(keyframe, id));
+            bus_.publish(messages::channels::kFrame, frame(keyframe.utime));
+            bus_.publish(messages::channels::kKeyframe, messages::to_message(keyframe, id));
             Pose pose = Pose::Identity();
             pose.translation().x() = 0.1 * id;
             trajectory_.keyframes.push_back({id, keyframe.utime, pose});
             trajectory_.utime = keyframe.utime;
             ++trajectory_.revision;
-            bus_.publish(channels::kTrajectory, to_message(trajectory_, seq_++));
+            bus_.publish(messages::channels::kTrajectory, messages::to_message(trajectory_, seq_++));
         }
     }
     /// The trajectory again, with all keyframes `shift` metres aside.
@@ -33,7 +33,7 @@ class OctomapShellTest : public test::ShellTest {
         for (KeyframePose& keyframe : trajectory_.keyframes)
             keyframe.world_from_camera.translation().x() += shift;
         ++trajectory_.revision;
-        bus_.publish(channels::kTrajectory, to_message(trajectory_, seq_++));
+        bus_.publish(messages::channels::kTrajectory, messages::to_message(trajectory_, seq_++));
     }
 
     KeyframeTrajectory trajectory_;
@@ -41,20 +41,20 @@ class OctomapShellTest : public test::ShellTest {
 };
 
 TEST_F(OctomapShellTest, MapsTheDepthOfKeyframesAmongCorruptMessages) {
-    OctomapShell shell(bus_, std::make_shared<FrameDecoder>(bus_), {});
-    const auto sizes = collect<map_size_t>(channels::kOctomapSize);
+    OctomapShell shell(bus_, std::make_shared<messages::FrameDecoder>(bus_), {});
+    const auto sizes = collect<map_size_t>(messages::channels::kOctomapSize);
     Keyframe keyframe;
     keyframe.id = 0;
     keyframe.utime = 1000;
     KeyframeTrajectory trajectory;
     trajectory.keyframes = {{0, 1000, Pose::Identity()}};
     publish_camera();
-    publish_corrupt(channels::kFrame, frame(1));
-    bus_.publish(channels::kFrame, frame(1000));
-    publish_corrupt(channels::kKeyframe, to_message(keyframe, 0));
-    bus_.publish(channels::kKeyframe, to_message(keyframe, 0));
-    publish_corrupt(channels::kTrajectory, to_message(trajectory, 0));
-    bus_.publish(channels::kTrajectory, to_message(trajectory, 0));
+    publish_corrupt(messages::channels::kFrame, frame(1));
+    bus_.publish(messages::channels::kFrame, frame(1000));
+    publish_corrupt(messages::channels::kKeyframe, messages::to_message(keyframe, 0));
+    bus_.publish(messages::channels::kKeyframe, messages::to_message(keyframe, 0));
+    publish_corrupt(messages::channels::kTrajectory, messages::to_message(trajectory, 0));
+    bus_.publish(messages::channels::kTrajectory, messages::to_message(trajectory, 0));
     bus_.drain();
     shell.finish();
     bus_.drain();
@@ -66,24 +66,24 @@ TEST_F(OctomapShellTest, MapsTheDepthOfKeyframesAmongCorruptMessages) {
 }
 
 TEST_F(OctomapShellTest, AKeyframeWhoseFrameNeverCameIsCounted) {
-    OctomapShell shell(bus_, std::make_shared<FrameDecoder>(bus_), {});
+    OctomapShell shell(bus_, std::make_shared<messages::FrameDecoder>(bus_), {});
     Keyframe keyframe;
     keyframe.id = 0;
     keyframe.utime = 5;
-    bus_.publish(channels::kKeyframe, to_message(keyframe, 0));
+    bus_.publish(messages::channels::kKeyframe, messages::to_message(keyframe, 0));
     bus_.drain();
     EXPECT_EQ(shell.status().dropped_count(), 1);
     EXPECT_EQ(shell.status().losses().at("keyframes whose frame was gone"), 1);
 }
 
 TEST_F(OctomapShellTest, AKeyframeThatNeverGotAPoseIsCounted) {
-    OctomapShell shell(bus_, std::make_shared<FrameDecoder>(bus_), {});
+    OctomapShell shell(bus_, std::make_shared<messages::FrameDecoder>(bus_), {});
     publish_camera();
-    bus_.publish(channels::kFrame, frame(1000));
+    bus_.publish(messages::channels::kFrame, frame(1000));
     Keyframe keyframe;
     keyframe.id = 0;
     keyframe.utime = 1000;
-    bus_.publish(channels::kKeyframe, to_message(keyframe, 0));
+    bus_.publish(messages::channels::kKeyframe, messages::to_message(keyframe, 0));
     bus_.drain();
     EXPECT_EQ(shell.status().dropped_count(), 0);
     shell.finish();
@@ -92,11 +92,11 @@ TEST_F(OctomapShellTest, AKeyframeThatNeverGotAPoseIsCounted) {
 }
 
 TEST_F(OctomapShellTest, AnOctoMapThatWasStartedAgainSaysWhatItLacks) {
-    OctomapShell shell(bus_, std::make_shared<FrameDecoder>(bus_), {});
+    OctomapShell shell(bus_, std::make_shared<messages::FrameDecoder>(bus_), {});
     publish_camera();
     for (int id = -3; id < 0; ++id) trajectory_.keyframes.push_back({10 + id, 10 + id, Pose::Identity()});
     trajectory_.utime = 9;
-    bus_.publish(channels::kTrajectory, to_message(trajectory_, seq_++));
+    bus_.publish(messages::channels::kTrajectory, messages::to_message(trajectory_, seq_++));
     bus_.drain();
     std::this_thread::sleep_for(std::chrono::milliseconds(1050));
     shell.poll();
@@ -109,7 +109,7 @@ TEST_F(OctomapShellTest, AnOctoMapThatWasStartedAgainSaysWhatItLacks) {
 TEST_F(OctomapShellTest, FrozenKeyframesAreCounted) {
     OctomapOptions options;
     options.max_keyframes = 2;
-    OctomapShell shell(bus_, std::make_shared<FrameDecoder>(bus_), options);
+    OctomapShell shell(bus_, std::make_shared<messages::FrameDecoder>(bus_), options);
     publish_camera();
     walk(5);
     bus_.drain();
@@ -119,9 +119,10 @@ TEST_F(OctomapShellTest, FrozenKeyframesAreCounted) {
 }
 
 TEST_F(OctomapShellTest, TheBackgroundComesToTheSameSizes) {
-    OctomapShell shell(bus_, std::make_shared<FrameDecoder>(bus_), {});
-    OctomapShell background(bus_, std::make_shared<FrameDecoder>(bus_), {}, Building::kInBackground);
-    const auto sizes = collect<map_size_t>(channels::kOctomapSize);
+    OctomapShell shell(bus_, std::make_shared<messages::FrameDecoder>(bus_), {});
+    OctomapShell background(bus_, std::make_shared<messages::FrameDecoder>(bus_), {},
+                            Building::kInBackground);
+    const auto sizes = collect<map_size_t>(messages::channels::kOctomapSize);
     publish_camera();
     walk(12);
     bus_.drain();
@@ -147,4 +148,4 @@ TEST_F(OctomapShellTest, TheBackgroundComesToTheSameSizes) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::octomap

@@ -6,17 +6,17 @@
 #include <random>
 #include <sstream>
 
-namespace planemap {
+namespace planemap::octomap {
 namespace {
 
 /// Random cells, and two blocks whose cells are all free or all occupied: leaves of several sizes.
-octomap::OcTree random_tree(std::uint64_t seed) {
+::octomap::OcTree random_tree(std::uint64_t seed) {
     std::mt19937_64 random(seed);
-    octomap::OcTree tree(0.05);
+    ::octomap::OcTree tree(0.05);
     std::uniform_int_distribution<int> at(32700, 32800), hit(0, 3);
     const auto key = [](int x, int y, int z) {
-        return octomap::OcTreeKey(static_cast<octomap::key_type>(x), static_cast<octomap::key_type>(y),
-                                  static_cast<octomap::key_type>(z));
+        return ::octomap::OcTreeKey(static_cast<::octomap::key_type>(x), static_cast<::octomap::key_type>(y),
+                                    static_cast<::octomap::key_type>(z));
     };
     for (int i = 0; i < 30000; ++i) {
         const auto k = key(at(random) / 3, at(random) / 2, at(random) / 4);
@@ -33,8 +33,8 @@ octomap::OcTree random_tree(std::uint64_t seed) {
 }
 
 /// As OctoMap itself reads a .bt file.
-std::unique_ptr<octomap::OcTree> loaded(const std::string& bt) {
-    auto tree = std::make_unique<octomap::OcTree>(0.05);
+std::unique_ptr<::octomap::OcTree> loaded(const std::string& bt) {
+    auto tree = std::make_unique<::octomap::OcTree>(0.05);
     std::istringstream in(bt);
     EXPECT_TRUE(tree->readBinary(in));
     return tree;
@@ -42,7 +42,7 @@ std::unique_ptr<octomap::OcTree> loaded(const std::string& bt) {
 
 TEST(OctomapSizes, AreThoseThatOctoMapItselfGives) {
     for (const std::uint64_t seed : {1, 2, 3}) {
-        const octomap::OcTree tree = random_tree(seed);
+        const ::octomap::OcTree tree = random_tree(seed);
         const OctomapSizes sizes = sizes_of(tree);
         EXPECT_EQ(sizes.memory_bytes, tree.memoryUsage());
         EXPECT_EQ(sizes.nodes, tree.size());
@@ -55,18 +55,18 @@ TEST(OctomapSizes, AreThoseThatOctoMapItselfGives) {
 }
 
 TEST(OctomapSizes, TheOccupiedPartIsTheFileWithoutFreeSpace) {
-    const octomap::OcTree tree = random_tree(4);
+    const ::octomap::OcTree tree = random_tree(4);
     const auto likely = loaded(bt_of(tree));
-    octomap::OcTree occupied(0.05);
+    ::octomap::OcTree occupied(0.05);
     for (auto leaf = likely->begin_leafs(), end = likely->end_leafs(); leaf != end; ++leaf) {
         if (!likely->isNodeOccupied(*leaf)) continue;
         const int n = 1 << (likely->getTreeDepth() - leaf.getDepth());
-        const octomap::OcTreeKey low = leaf.getIndexKey();
+        const ::octomap::OcTreeKey low = leaf.getIndexKey();
         for (int i = 0; i < n * n * n; ++i) {
-            octomap::OcTreeKey key = low;
-            key[0] = static_cast<octomap::key_type>(key[0] + i % n);
-            key[1] = static_cast<octomap::key_type>(key[1] + i / n % n);
-            key[2] = static_cast<octomap::key_type>(key[2] + i / (n * n));
+            ::octomap::OcTreeKey key = low;
+            key[0] = static_cast<::octomap::key_type>(key[0] + i % n);
+            key[1] = static_cast<::octomap::key_type>(key[1] + i / n % n);
+            key[2] = static_cast<::octomap::key_type>(key[2] + i / (n * n));
             occupied.updateNode(key, true, true);
         }
     }
@@ -79,7 +79,7 @@ TEST(OctomapSizes, TheOccupiedPartIsTheFileWithoutFreeSpace) {
 }
 
 TEST(OctomapSizes, OfAnEmptyTreeAreItsHeaders) {
-    const octomap::OcTree tree(0.05);
+    const ::octomap::OcTree tree(0.05);
     const OctomapSizes sizes = sizes_of(tree);
     EXPECT_EQ(sizes.memory_bytes, tree.memoryUsage());
     EXPECT_EQ(sizes.nodes, 0u);
@@ -90,4 +90,4 @@ TEST(OctomapSizes, OfAnEmptyTreeAreItsHeaders) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::octomap

@@ -5,7 +5,7 @@
 
 #include "octomap/scenes.hpp"
 
-namespace planemap {
+namespace planemap::octomap {
 namespace {
 
 using namespace std::chrono_literals;
@@ -90,4 +90,4 @@ TEST(OctomapWorker, AStopAbandonsWhatIsUnderWay) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::octomap

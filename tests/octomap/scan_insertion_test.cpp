@@ -6,12 +6,12 @@
 #include <limits>
 #include <random>
 
-namespace planemap {
+namespace planemap::octomap {
 namespace {
 
-std::vector<octomap::point3d> random_scan(std::mt19937_64& random, std::size_t size) {
+std::vector<::octomap::point3d> random_scan(std::mt19937_64& random, std::size_t size) {
     std::uniform_real_distribution<float> across(-1.5f, 1.5f), depth(0.5f, 5.0f);
-    std::vector<octomap::point3d> scan;
+    std::vector<::octomap::point3d> scan;
     for (std::size_t i = 0; i < size; ++i) {
         const float z = depth(random);
         scan.emplace_back(across(random) * z, across(random) * z, z);
@@ -19,9 +19,9 @@ std::vector<octomap::point3d> random_scan(std::mt19937_64& random, std::size_t s
     return scan;
 }
 
-void insert_with_octomap(octomap::OcTree& tree, const std::vector<octomap::point3d>& points,
-                         const octomap::point3d& origin, double max_range) {
-    octomap::Pointcloud scan;
+void insert_with_octomap(::octomap::OcTree& tree, const std::vector<::octomap::point3d>& points,
+                         const ::octomap::point3d& origin, double max_range) {
+    ::octomap::Pointcloud scan;
     for (const auto& p : points) scan.push_back(p);
     tree.insertPointCloud(scan, origin, max_range, true, true);
 }
@@ -30,15 +30,15 @@ TEST(ScanInserter, GivesTheTreeThatOctomapGives) {
     for (const double resolution : {0.05, 0.13}) {
         for (const double max_range : {-1.0, 3.0}) {
             std::mt19937_64 random(3);
-            octomap::OcTree ours(resolution), theirs(resolution);
+            ::octomap::OcTree ours(resolution), theirs(resolution);
             ScanInserter inserter;
             for (int i = 0; i < 6; ++i) {
                 const auto scan = random_scan(random, 2000);
-                const octomap::point3d origin(0.1f * static_cast<float>(i), -0.07f, 0.3f);
+                const ::octomap::point3d origin(0.1f * static_cast<float>(i), -0.07f, 0.3f);
                 inserter.insert(ours, scan, origin, max_range);
                 insert_with_octomap(theirs, scan, origin, max_range);
             }
-            for (octomap::OcTree* tree : {&ours, &theirs}) {
+            for (::octomap::OcTree* tree : {&ours, &theirs}) {
                 tree->updateInnerOccupancy();
                 tree->prune();
             }
@@ -49,9 +49,9 @@ TEST(ScanInserter, GivesTheTreeThatOctomapGives) {
 }
 
 TEST(ScanInserter, IgnoresPointsThatTheTreeCannotHold) {
-    octomap::OcTree tree(0.05);
+    ::octomap::OcTree tree(0.05);
     const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
-    const std::vector<octomap::point3d> scan{{nan, 0, 0}, {0, inf, 1}, {1e9f, 0, 0}};
+    const std::vector<::octomap::point3d> scan{{nan, 0, 0}, {0, inf, 1}, {1e9f, 0, 0}};
     ScanInserter().insert(tree, scan, {0, 0, 0}, 5);
     EXPECT_EQ(tree.size(), 0u);
     ScanInserter().insert(tree, {}, {0, 0, 0}, 5);
@@ -59,4 +59,4 @@ TEST(ScanInserter, IgnoresPointsThatTheTreeCannotHold) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::octomap

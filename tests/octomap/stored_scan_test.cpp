@@ -7,7 +7,7 @@
 
 #include "octomap/scenes.hpp"
 
-namespace planemap {
+namespace planemap::octomap {
 namespace {
 
 TEST(StoredScan, GivesBackEachReadingWhereItIs) {
@@ -50,4 +50,4 @@ TEST(StoredScan, RefusesWhatIsNoScan) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::octomap

@@ -5,20 +5,20 @@
 
 #include <random>
 
-namespace planemap {
+namespace planemap::octomap {
 namespace {
 
-octomap::OcTreeKey key(int x, int y, int z) {
-    return {static_cast<octomap::key_type>(x), static_cast<octomap::key_type>(y),
-            static_cast<octomap::key_type>(z)};
+::octomap::OcTreeKey key(int x, int y, int z) {
+    return {static_cast<::octomap::key_type>(x), static_cast<::octomap::key_type>(y),
+            static_cast<::octomap::key_type>(z)};
 }
 
 /// Cells from 32700 up: single ones, and a cube of 128 that is all free, so that leaves larger than a block
 /// are in the tree.
-std::unique_ptr<octomap::OcTree> random_tree(std::uint64_t seed) {
+std::unique_ptr<::octomap::OcTree> random_tree(std::uint64_t seed) {
     std::mt19937_64 random(seed);
     std::uniform_int_distribution<int> at(32700, 32950), state(0, 2);
-    auto tree = std::make_unique<octomap::OcTree>(0.05);
+    auto tree = std::make_unique<::octomap::OcTree>(0.05);
     for (int i = 0; i < 20000; ++i)
         tree->updateNode(key(at(random), at(random) / 2, at(random) / 3), state(random) == 0, true);
     for (int x = 0; x < 128; ++x) {
@@ -32,13 +32,13 @@ std::unique_ptr<octomap::OcTree> random_tree(std::uint64_t seed) {
 }
 
 /// What a tree says of a cell: its log-odds, or no value.
-std::optional<float> value(const octomap::OcTree& tree, const octomap::OcTreeKey& k) {
+std::optional<float> value(const ::octomap::OcTree& tree, const ::octomap::OcTreeKey& k) {
     const auto* node = tree.getRoot() != nullptr ? tree.search(k) : nullptr;
     return node != nullptr ? std::optional(node->getLogOdds()) : std::nullopt;
 }
 
 /// The number of nodes that there really are.
-std::size_t walked(const octomap::OcTree& tree) {
+std::size_t walked(const ::octomap::OcTree& tree) {
     std::size_t nodes = 0;
     for (auto node = tree.begin_tree(), end = tree.end_tree(); node != end; ++node) ++nodes;
     return nodes;
@@ -49,7 +49,8 @@ TEST(TreeBlocks, ComposedTakesEachCellFromTheTreeItIsToComeFrom) {
     BlockSet blocks;
     for (const auto& [x, y, z] : {std::tuple(0, 0, 0), {1, 2, 0}, {2, 2, 2}, {500, 500, 500}, {-22, 3, 1}})
         blocks.insert({1022 + x, 1022 + y, 1022 + z});
-    for (const octomap::OcTree* from : std::initializer_list<const octomap::OcTree*>{inside.get(), nullptr}) {
+    for (const ::octomap::OcTree* from :
+         std::initializer_list<const ::octomap::OcTree*>{inside.get(), nullptr}) {
         const auto tree = composed(*outside, from, blocks);
         EXPECT_EQ(tree->size(), walked(*tree));
         std::mt19937_64 random(3);
@@ -60,7 +61,7 @@ TEST(TreeBlocks, ComposedTakesEachCellFromTheTreeItIsToComeFrom) {
             const auto k = key(cell.x, cell.y, cell.z);
             const bool in_block = blocks.contains(block_of(cell));
             replaced += in_block;
-            const octomap::OcTree* source = in_block ? from : outside.get();
+            const ::octomap::OcTree* source = in_block ? from : outside.get();
             ASSERT_EQ(value(*tree, k), source != nullptr ? value(*source, k) : std::nullopt);
         }
         EXPECT_GT(replaced, 20);
@@ -74,7 +75,7 @@ TEST(TreeBlocks, WithoutBlocksComposedIsACopyAndWithAllItIsEmpty) {
     EXPECT_TRUE(*copy == *tree);
     BlockSet all;
     for (auto leaf = tree->begin_leafs(), end = tree->end_leafs(); leaf != end; ++leaf) {
-        const octomap::OcTreeKey k = leaf.getIndexKey();
+        const ::octomap::OcTreeKey k = leaf.getIndexKey();
         const int n = 1 << (tree->getTreeDepth() - leaf.getDepth());
         for (int i = 0; i < n; i += 32) {
             for (int j = 0; j < n; j += 32) {
@@ -85,7 +86,7 @@ TEST(TreeBlocks, WithoutBlocksComposedIsACopyAndWithAllItIsEmpty) {
     const auto empty = composed(*tree, nullptr, all);
     EXPECT_EQ(empty->size(), 0u);
     EXPECT_EQ(empty->getRoot(), nullptr);
-    const auto taken = composed(octomap::OcTree(0.05), tree.get(), all);
+    const auto taken = composed(::octomap::OcTree(0.05), tree.get(), all);
     EXPECT_EQ(taken->size(), walked(*taken));
     bring_up_to_date(*taken);
     EXPECT_TRUE(*taken == *tree);
@@ -94,7 +95,7 @@ TEST(TreeBlocks, WithoutBlocksComposedIsACopyAndWithAllItIsEmpty) {
 TEST(TreeBlocks, BringUpToDateDoesWhatOctoMapsOwnDo) {
     std::mt19937_64 random(7);
     std::uniform_int_distribution<int> at(0, 15), state(0, 3);
-    octomap::OcTree ours(0.1), own(0.1);
+    ::octomap::OcTree ours(0.1), own(0.1);
     for (int round = 0; round < 5; ++round) {
         for (int i = 0; i < 12000; ++i) {
             const auto k = key(32760 + at(random), 32760 + at(random), 32760 + at(random));
@@ -112,4 +113,4 @@ TEST(TreeBlocks, BringUpToDateDoesWhatOctoMapsOwnDo) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::octomap

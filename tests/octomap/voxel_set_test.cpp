@@ -7,7 +7,7 @@
 #include <set>
 #include <tuple>
 
-namespace planemap {
+namespace planemap::octomap {
 namespace {
 
 using Tuple = std::tuple<int, int, int>;
@@ -42,4 +42,4 @@ TEST(VoxelSet, IsEmptyAfterClear) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::octomap

@@ -12,27 +12,29 @@ namespace {
 class OdometryShellTest : public test::ShellTest {
   protected:
     void publish_regions(std::int64_t utime) {
-        bus_.publish(channels::kRegions, to_message(FrameRegions{utime, {}}, 0));
+        bus_.publish(messages::channels::kRegions,
+                     messages::to_message(messages::FrameRegions{utime, {}}, 0));
     }
 };
 
 TEST_F(OdometryShellTest, TracksAmongCorruptMessages) {
-    OdometryShell shell(bus_, std::make_shared<FrameDecoder>(bus_), {});
-    const auto estimates = collect<odometry_t>(channels::kOdometry);
-    const auto keyframes = collect<keyframe_t>(channels::kKeyframe);
+    OdometryShell shell(bus_, std::make_shared<messages::FrameDecoder>(bus_), {});
+    const auto estimates = collect<odometry_t>(messages::channels::kOdometry);
+    const auto keyframes = collect<keyframe_t>(messages::channels::kKeyframe);
     publish_camera();
     for (int i = 0; i < 10; ++i) {
         const std::int64_t utime = 1000000 + 33333 * i;
-        publish_corrupt(channels::kFrame, frame(1));
-        publish_corrupt(channels::kRegions, to_message(FrameRegions{utime, {}}, 0));
-        bus_.publish(channels::kFrame, frame(utime, 0.01 * i));
+        publish_corrupt(messages::channels::kFrame, frame(1));
+        publish_corrupt(messages::channels::kRegions,
+                        messages::to_message(messages::FrameRegions{utime, {}}, 0));
+        bus_.publish(messages::channels::kFrame, frame(utime, 0.01 * i));
         publish_regions(utime);
         bus_.drain();
     }
     ASSERT_EQ(estimates->size(), 10u);
     ASSERT_FALSE(keyframes->empty());
     EXPECT_EQ(keyframes->front().id, 0);
-    const OdometryEstimate last = from_message(estimates->back());
+    const OdometryEstimate last = messages::from_message(estimates->back());
     EXPECT_EQ(last.status, TrackingStatus::kTracked)
         << last.inliers << " of " << last.features << " features";
     EXPECT_NEAR(last.odom_from_camera.translation().x(), 0.09, 0.02);
@@ -40,12 +42,12 @@ TEST_F(OdometryShellTest, TracksAmongCorruptMessages) {
 }
 
 TEST_F(OdometryShellTest, SaysThatTheSensorStartedAgainAndWhatItsPosesAreThen) {
-    OdometryShell shell(bus_, std::make_shared<FrameDecoder>(bus_), {});
-    const auto keyframes = collect<keyframe_t>(channels::kKeyframe);
+    OdometryShell shell(bus_, std::make_shared<messages::FrameDecoder>(bus_), {});
+    const auto keyframes = collect<keyframe_t>(messages::channels::kKeyframe);
     publish_camera();
     for (const int start : {500000000, 1000000}) {
         for (int i = 0; i < 10; ++i) {
-            bus_.publish(channels::kFrame, frame(start + 33333 * i));
+            bus_.publish(messages::channels::kFrame, frame(start + 33333 * i));
             publish_regions(start + 33333 * i);
             bus_.drain();
         }
@@ -62,10 +64,10 @@ TEST_F(OdometryShellTest, SaysThatTheSensorStartedAgainAndWhatItsPosesAreThen) {
 }
 
 TEST_F(OdometryShellTest, AFrameWaitsForItsRegionsButNotForEver) {
-    OdometryShell shell(bus_, std::make_shared<FrameDecoder>(bus_), {});
-    const auto estimates = collect<odometry_t>(channels::kOdometry);
+    OdometryShell shell(bus_, std::make_shared<messages::FrameDecoder>(bus_), {});
+    const auto estimates = collect<odometry_t>(messages::channels::kOdometry);
     publish_camera();
-    for (int i = 0; i < 11; ++i) bus_.publish(channels::kFrame, frame(1000000 + 33333 * i));
+    for (int i = 0; i < 11; ++i) bus_.publish(messages::channels::kFrame, frame(1000000 + 33333 * i));
     bus_.drain();
     EXPECT_EQ(estimates->size(), 3u) << "eight wait, the first frame too";
     shell.finish();
@@ -76,35 +78,35 @@ TEST_F(OdometryShellTest, AFrameWaitsForItsRegionsButNotForEver) {
 }
 
 TEST_F(OdometryShellTest, ALonelyFrameWaitsForATimeOnly) {
-    OdometryShell shell(bus_, std::make_shared<FrameDecoder>(bus_), {});
-    const auto estimates = collect<odometry_t>(channels::kOdometry);
+    OdometryShell shell(bus_, std::make_shared<messages::FrameDecoder>(bus_), {});
+    const auto estimates = collect<odometry_t>(messages::channels::kOdometry);
     publish_camera();
-    bus_.publish(channels::kFrame, frame(1000000));
+    bus_.publish(messages::channels::kFrame, frame(1000000));
     bus_.drain();
-    const std::int64_t start = now_us();
-    while (estimates->empty() && now_us() - start < 5000000) {
+    const std::int64_t start = messages::now_us();
+    while (estimates->empty() && messages::now_us() - start < 5000000) {
         std::this_thread::sleep_for(std::chrono::milliseconds(shell.poll()));
         bus_.drain();
     }
     EXPECT_EQ(estimates->size(), 1u);
-    EXPECT_GT(now_us() - start, 400000);
+    EXPECT_GT(messages::now_us() - start, 400000);
 }
 
 TEST_F(OdometryShellTest, RegionsOfALaterFrameEndTheWaitOfThoseBefore) {
-    OdometryShell shell(bus_, std::make_shared<FrameDecoder>(bus_), {});
-    const auto estimates = collect<odometry_t>(channels::kOdometry);
+    OdometryShell shell(bus_, std::make_shared<messages::FrameDecoder>(bus_), {});
+    const auto estimates = collect<odometry_t>(messages::channels::kOdometry);
     publish_camera();
-    for (int i = 0; i < 4; ++i) bus_.publish(channels::kFrame, frame(1000000 + 33333 * i));
+    for (int i = 0; i < 4; ++i) bus_.publish(messages::channels::kFrame, frame(1000000 + 33333 * i));
     publish_regions(1000000 + 33333 * 2);  // the segmentation has dropped the first two
     bus_.drain();
     EXPECT_EQ(estimates->size(), 3u);
 }
 
 TEST_F(OdometryShellTest, TheFirstKeyframeHasItsRegions) {
-    OdometryShell shell(bus_, std::make_shared<FrameDecoder>(bus_), {});
-    const auto keyframes = collect<keyframe_t>(channels::kKeyframe);
+    OdometryShell shell(bus_, std::make_shared<messages::FrameDecoder>(bus_), {});
+    const auto keyframes = collect<keyframe_t>(messages::channels::kKeyframe);
     publish_camera();
-    bus_.publish(channels::kFrame, frame(1000000));
+    bus_.publish(messages::channels::kFrame, frame(1000000));
     bus_.drain();
     EXPECT_TRUE(keyframes->empty());
     PlanarRegion wall;
@@ -115,20 +117,21 @@ TEST_F(OdometryShellTest, TheFirstKeyframeHasItsRegions) {
     wall.box.frame_from_box.translation() = wall.moments.mean();
     wall.box.half_extents = {0.5, 0.5, 0};
     wall.outline.rings = {{{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}}};
-    bus_.publish(channels::kRegions, to_message(FrameRegions{1000000, {wall}}, 0));
+    bus_.publish(messages::channels::kRegions,
+                 messages::to_message(messages::FrameRegions{1000000, {wall}}, 0));
     bus_.drain();
     ASSERT_EQ(keyframes->size(), 1u);
     EXPECT_EQ(keyframes->front().n_regions, 1);
 }
 
 TEST_F(OdometryShellTest, AFrameWithBrokenDepthCostsItselfOnly) {
-    OdometryShell shell(bus_, std::make_shared<FrameDecoder>(bus_), {});
-    const auto estimates = collect<odometry_t>(channels::kOdometry);
+    OdometryShell shell(bus_, std::make_shared<messages::FrameDecoder>(bus_), {});
+    const auto estimates = collect<odometry_t>(messages::channels::kOdometry);
     publish_camera();
     for (int i = 0; i < 6; ++i) {
         bot_core::images_t images = frame(1000000 + 33333 * i);
         if (i % 2 == 1) images.images[1].pixelformat = 0;  // found out only when odometry asks for the depth
-        bus_.publish(channels::kFrame, images);
+        bus_.publish(messages::channels::kFrame, images);
     }
     bus_.drain();
     EXPECT_NO_THROW(shell.finish());
@@ -138,24 +141,26 @@ TEST_F(OdometryShellTest, AFrameWithBrokenDepthCostsItselfOnly) {
 }
 
 TEST_F(OdometryShellTest, RegionsMayComeFirst) {
-    OdometryShell shell(bus_, std::make_shared<FrameDecoder>(bus_), {});
-    const auto estimates = collect<odometry_t>(channels::kOdometry);
+    OdometryShell shell(bus_, std::make_shared<messages::FrameDecoder>(bus_), {});
+    const auto estimates = collect<odometry_t>(messages::channels::kOdometry);
     publish_camera();
     publish_regions(1000000);
     bus_.drain();
-    bus_.publish(channels::kFrame, frame(1000000));
+    bus_.publish(messages::channels::kFrame, frame(1000000));
     bus_.drain();
     EXPECT_EQ(estimates->size(), 1u);
 }
 
 TEST_F(OdometryShellTest, WhatIsWrongWithALostFramesDepthIsCounted) {
-    OdometryShell shell(bus_, std::make_shared<FrameDecoder>(bus_), {});
+    OdometryShell shell(bus_, std::make_shared<messages::FrameDecoder>(bus_), {});
     const auto publish = [&](const CameraInfo& info, std::uint16_t raw, std::int64_t utime) {
-        bus_.publish(channels::kCameraInfo, to_message(info, 0, 0));
+        bus_.publish(messages::channels::kCameraInfo, messages::to_message(info, 0, 0));
         bot_core::images_t images = frame(utime);
-        images.images[0] = color_image_message(RgbImage(kWidth, kHeight), utime, ColorEncoding::kRaw, 90);
-        images.images[1] = depth_image_message(DepthImage(kWidth, kHeight, raw), utime, DepthEncoding::kRaw);
-        bus_.publish(channels::kFrame, images);
+        images.images[0] = messages::color_image_message(RgbImage(kWidth, kHeight), utime,
+                                                         messages::ColorEncoding::kRaw, 90);
+        images.images[1] = messages::depth_image_message(DepthImage(kWidth, kHeight, raw), utime,
+                                                         messages::DepthEncoding::kRaw);
+        bus_.publish(messages::channels::kFrame, images);
         bus_.drain();
         shell.finish();
     };

@@ -19,7 +19,7 @@
 #include "segmentation/segmentation.hpp"
 #include "temporary_folder.hpp"
 
-namespace planemap {
+namespace planemap::pipeline {
 namespace {
 
 struct Outcome {
@@ -29,7 +29,7 @@ struct Outcome {
 };
 
 Outcome run(const std::filesystem::path& recording) {
-    Bus bus("memq://");
+    messages::Bus bus("memq://");
     PipelineOptions options;
     options.with_octomap = false;
     Pipeline pipeline(bus, options);
@@ -90,7 +90,7 @@ TEST(OutlinesOfRecordings, DoNotReachBeyondReadings) {
     int looked_at = 0;
     for (const char* sequence : {"aims_robot", "d435_stills"}) {
         if (!std::filesystem::is_directory(test::data_folder(sequence))) continue;
-        Dataset dataset(test::data_folder(sequence));
+        sensor::Dataset dataset(test::data_folder(sequence));
         SensorFrame frame;
         for (int i = 0; dataset.next(frame).status == ReadResult::Status::kFrame; ++i) {
             if (i % 8 != 0) continue;
@@ -118,14 +118,14 @@ std::string why_none_tracked(const std::filesystem::path& folder, const CameraIn
             for (int u = 0; u < depth.width; ++u) depth(u, v) = reading(u, v);
         }
         const std::string name = "depth/" + std::to_string(i) + ".png";
-        write_depth_png(folder / name, depth);
+        sensor::write_depth_png(folder / name, depth);
         list += std::to_string(1 + 0.1 * i) + " " + name + "\n";
     }
     write_file(folder / "depth.txt", list);
     write_file(folder / "camera.json",
                R"({"depth_camera": {"width": 160, "height": 120, "fx": 140, "fy": 140, "cx": 80, "cy": 60},)"
                R"( "depth_units_per_metre": 1000})");
-    Bus bus("memq://");
+    messages::Bus bus("memq://");
     PipelineOptions options;
     options.with_octomap = false;
     Pipeline pipeline(bus, options);
@@ -152,4 +152,4 @@ TEST(WhyLost, DepthIsBlamedOnlyForItsOwnFaults) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::pipeline

@@ -45,7 +45,7 @@ TEST_F(SegmentImages, LabelsAreTheLibrarys) {
         segmentation::Segmentation expected;
         segmentation::make_segmenter(options.segmentation)->segment(small_depth(), camera, expected);
         EXPECT_EQ(report.regions, expected.regions.size());
-        EXPECT_EQ(decode_depth_png(read_file(options.output / "a.png"), 320, 240).pixels,
+        EXPECT_EQ(sensor::decode_depth_png(read_file(options.output / "a.png"), 320, 240).pixels,
                   expected.labels.pixels);
         EXPECT_EQ(json("a.json")["regions"].size(), expected.regions.size());
         EXPECT_EQ(json("a.json")["method"], method);
@@ -67,7 +67,7 @@ TEST_F(SegmentImages, OverlayIsDrawnOnRequest) {
     EXPECT_FALSE(std::filesystem::exists(options.output / "a.overlay.png"));
     options.overlay = true;
     segment({image});
-    EXPECT_EQ(decode_color_png(read_file(options.output / "a.overlay.png"), 320, 240).width, 320);
+    EXPECT_EQ(sensor::decode_color_png(read_file(options.output / "a.overlay.png"), 320, 240).width, 320);
 }
 
 TEST_F(SegmentImages, ABadImageCostsItselfOnly) {

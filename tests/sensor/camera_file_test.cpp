@@ -8,7 +8,7 @@
 #include "data_folder.hpp"
 #include "temporary_folder.hpp"
 
-namespace planemap {
+namespace planemap::sensor {
 namespace {
 
 using testing::AllOf;
@@ -273,4 +273,4 @@ TEST(CameraFile, TheExampleOfTheErrorIsComplete) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::sensor

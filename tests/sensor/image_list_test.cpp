@@ -6,7 +6,7 @@
 
 #include "temporary_folder.hpp"
 
-namespace planemap {
+namespace planemap::sensor {
 namespace {
 
 using testing::AllOf;
@@ -163,4 +163,4 @@ TEST(Associate, WhatIsLeftOverIsCounted) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::sensor

@@ -6,7 +6,7 @@
 
 #include "temporary_folder.hpp"
 
-namespace planemap {
+namespace planemap::sensor {
 namespace {
 
 using testing::AllOf;
@@ -62,4 +62,4 @@ TEST(JsonFile, EveryTruncationAndChangedByteIsAnErrorOrAnObject) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::sensor

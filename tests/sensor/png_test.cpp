@@ -10,7 +10,7 @@
 #include "sensor/test_images.hpp"
 #include "temporary_folder.hpp"
 
-namespace planemap {
+namespace planemap::sensor {
 namespace {
 
 using testing::HasSubstr;
@@ -127,4 +127,4 @@ TEST(Png, AChangedByteIsAnErrorOrChangesNothing) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::sensor

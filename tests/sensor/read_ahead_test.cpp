@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <thread>
 
-namespace planemap {
+namespace planemap::sensor {
 namespace {
 
 using namespace std::chrono_literals;
@@ -76,4 +76,4 @@ TEST(ReadAhead, ASourceThatBlocksDoesNotHoldTheEnd) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::sensor

@@ -15,7 +15,7 @@
 #include "shell_fixture.hpp"
 #include "temporary_folder.hpp"
 
-namespace planemap {
+namespace planemap::sensor {
 namespace {
 
 /// Ten frames 0.3 s apart; the third is broken, the fifth has lost its colour.
@@ -108,14 +108,14 @@ class SensorShellTest : public test::ShellTest {
 TEST_F(SensorShellTest, PublishesEveryFrameInEveryEncoding) {
     for (const char* color : {"jpeg", "raw"}) {
         for (const char* depth : {"zipped", "raw"}) {
-            Bus bus("memq://");
+            messages::Bus bus("memq://");
             SensorShell shell(bus, std::make_unique<FakeSource>(camera()), fast(color, depth));
-            FrameDecoder decoder(bus);
-            std::vector<std::shared_ptr<const Frame>> frames;
+            messages::FrameDecoder decoder(bus);
+            std::vector<std::shared_ptr<const messages::Frame>> frames;
             int cameras = 0;
-            bus.subscribe(channels::kFrame,
-                          [&](const RawMessage& m) { frames.push_back(decoder.decode(m)); });
-            bus.subscribe(channels::kCameraInfo, [&](const RawMessage&) { ++cameras; });
+            bus.subscribe(messages::channels::kFrame,
+                          [&](const messages::RawMessage& m) { frames.push_back(decoder.decode(m)); });
+            bus.subscribe(messages::channels::kCameraInfo, [&](const messages::RawMessage&) { ++cameras; });
             while (shell.poll() >= 0) bus.drain();
             ASSERT_EQ(frames.size(), 9u);
             EXPECT_EQ(cameras, 3) << "at the start and once a second";
@@ -135,11 +135,12 @@ TEST_F(SensorShellTest, OnASharedBusFramesTellTheirSender) {
     const auto first_frame = [&](const std::string& url) {
         const std::filesystem::path file = folder.path() / "sensor.lcmlog";
         {
-            Bus bus(url);
+            messages::Bus bus(url);
             bot_core::images_t first;
             if (bus.in_process())
-                bus.subscribe(channels::kFrame,
-                              [&](const RawMessage& m) { first = decode<bot_core::images_t>(m.bytes); });
+                bus.subscribe(messages::channels::kFrame, [&](const messages::RawMessage& m) {
+                    first = messages::decode<bot_core::images_t>(m.bytes);
+                });
             SensorShell shell(bus, std::make_unique<FakeSource>(camera()), fast("raw", "raw"));
             shell.poll();
             if (bus.in_process()) {
@@ -147,11 +148,11 @@ TEST_F(SensorShellTest, OnASharedBusFramesTellTheirSender) {
                 return first;
             }
         }
-        LogReader log(file);
-        LogEvent event;
-        while (log.next(event) && event.channel != channels::kFrame) {
+        messages::LogReader log(file);
+        messages::LogEvent event;
+        while (log.next(event) && event.channel != messages::channels::kFrame) {
         }
-        return decode<bot_core::images_t>(event.bytes);
+        return messages::decode<bot_core::images_t>(event.bytes);
     };
     const std::string shared = "file://" + (folder.path() / "sensor.lcmlog").string() + "?mode=w";
     const auto one = first_frame(shared).images.back().metadata,
@@ -168,20 +169,20 @@ TEST_F(SensorShellTest, KeepsTheRecordedPace) {
     SensorShellOptions options;
     options.speed = 30;  // 2.7 s of frames in 90 ms
     SensorShell shell(bus_, std::make_unique<FakeSource>(camera()), options);
-    const std::int64_t start = now_us();
+    const std::int64_t start = messages::now_us();
     while (true) {
         const int wait_ms = shell.poll();
         if (wait_ms < 0) break;
         if (wait_ms > 0) bus_.handle(wait_ms);
     }
-    EXPECT_GE(now_us() - start, 80000);
+    EXPECT_GE(messages::now_us() - start, 80000);
 }
 
 /// Runs a shell to its end as a process does, and counts the camera messages.
-int cameras_of(Bus& bus, std::unique_ptr<FrameSource> source, const SensorShellOptions& options) {
+int cameras_of(messages::Bus& bus, std::unique_ptr<FrameSource> source, const SensorShellOptions& options) {
     SensorShell shell(bus, std::move(source), options);
     int cameras = 0;
-    bus.subscribe(channels::kCameraInfo, [&](const RawMessage&) { ++cameras; });
+    bus.subscribe(messages::channels::kCameraInfo, [&](const messages::RawMessage&) { ++cameras; });
     while (true) {
         const int wait_ms = shell.poll();
         if (wait_ms < 0) break;
@@ -203,7 +204,7 @@ TEST_F(SensorShellTest, LiveTheCameraIsToldOnceASecondByTheWallClock) {
     options.rate_hz = 8;
     // 20 frames in 2.4 s, whatever the stamps say: 20 ms in all, or 3 minutes.
     for (const std::int64_t step_us : {1000, 10000000}) {
-        Bus bus("memq://");
+        messages::Bus bus("memq://");
         const int cameras =
             cameras_of(bus, std::make_unique<StampedSource>(camera(), stamps_every(step_us, 20)), options);
         EXPECT_GE(cameras, 2) << step_us;
@@ -216,7 +217,7 @@ TEST_F(SensorShellTest, LiveTheCameraIsToldWhileTheSourceBlocks) {
     options.live = true;
     options.speed = 0;
     for (const std::size_t slow : {0u, 2u}) {
-        Bus bus("memq://");
+        messages::Bus bus("memq://");
         const int cameras = cameras_of(
             bus, std::make_unique<StampedSource>(camera(), stamps_every(1000, 3), slow, 2500), options);
         EXPECT_GE(cameras, 2) << slow;
@@ -228,7 +229,7 @@ TEST_F(SensorShellTest, NotLiveTheCameraGoesByTheStampsAlone) {
     EXPECT_EQ(
         cameras_of(bus_, std::make_unique<StampedSource>(camera(), stamps_every(10000, 3), 1, 1200), options),
         1);
-    Bus bus("memq://");
+    messages::Bus bus("memq://");
     EXPECT_EQ(cameras_of(bus, std::make_unique<StampedSource>(camera(), stamps_every(1000000, 5)), options),
               5);
 }
@@ -237,10 +238,10 @@ TEST_F(SensorShellTest, LiveEveryFrameComesInOrder) {
     SensorShellOptions options = fast("raw", "raw");
     options.live = true;
     SensorShell shell(bus_, std::make_unique<StampedSource>(camera(), stamps_every(1000, 50)), options);
-    FrameDecoder decoder(bus_);
+    messages::FrameDecoder decoder(bus_);
     std::vector<std::int64_t> utimes;
-    bus_.subscribe(channels::kFrame,
-                   [&](const RawMessage& m) { utimes.push_back(decoder.decode(m)->utime()); });
+    bus_.subscribe(messages::channels::kFrame,
+                   [&](const messages::RawMessage& m) { utimes.push_back(decoder.decode(m)->utime()); });
     while (shell.poll() >= 0) bus_.drain();
     EXPECT_EQ(utimes, stamps_every(1000, 50));
 }
@@ -286,13 +287,13 @@ TEST_F(SensorShellTest, ASourceWithoutOneGoodFrameEndsInAnError) {
 TEST_F(SensorShellTest, ARecordingWaitsForAConnection) {
     auto server = std::make_unique<test::TcpqServer>();
     const std::uint16_t port = server->port();
-    Bus bus(server->url());
+    messages::Bus bus(server->url());
     SensorShellOptions options;
     options.speed = 3;  // a frame in 100 ms
     SensorShell shell(bus, std::make_unique<FakeSource>(camera()), options);
     const auto play = [&](auto until) {
-        const std::int64_t start = now_us();
-        while (!until() && now_us() - start < 8000000) {
+        const std::int64_t start = messages::now_us();
+        while (!until() && messages::now_us() - start < 8000000) {
             const int wait_ms = shell.poll();
             if (wait_ms < 0) return;
             bus.handle(std::max(1, std::min(wait_ms, 20)));
@@ -301,15 +302,15 @@ TEST_F(SensorShellTest, ARecordingWaitsForAConnection) {
     play([&] { return shell.frames() == 2; });
     server.reset();
     play([&] { return !bus.connected(); });
-    const std::int64_t lost_us = now_us(), frames = shell.frames();
-    play([&] { return now_us() - lost_us > 700000; });
+    const std::int64_t lost_us = messages::now_us(), frames = shell.frames();
+    play([&] { return messages::now_us() - lost_us > 700000; });
     EXPECT_EQ(shell.frames(), frames) << "nobody was there";
     server = std::make_unique<test::TcpqServer>(port);
     play([&] { return bus.connected(); });
-    const std::int64_t again_us = now_us();
+    const std::int64_t again_us = messages::now_us();
     play([&] { return shell.frames() == 9; });
     EXPECT_EQ(shell.frames(), 9);
-    EXPECT_GE(now_us() - again_us, 100000 * (8 - frames)) << "at its pace";
+    EXPECT_GE(messages::now_us() - again_us, 100000 * (8 - frames)) << "at its pace";
 }
 
 TEST_F(SensorShellTest, BadOptionsAreNamed) {
@@ -326,4 +327,4 @@ TEST_F(SensorShellTest, BadOptionsAreNamed) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::sensor

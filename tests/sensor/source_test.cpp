@@ -7,7 +7,7 @@
 #include "simulator/simulated_source.hpp"
 #include "temporary_folder.hpp"
 
-namespace planemap {
+namespace planemap::sensor {
 namespace {
 
 TEST(OpenSource, OpensTheSimulator) {
@@ -47,4 +47,4 @@ TEST(OpenSource, SomeFramesOfTheSimulator) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::sensor

@@ -11,7 +11,7 @@
 
 #include "core/image.hpp"
 
-namespace planemap {
+namespace planemap::sensor {
 
 /// Any PNG: raw pixels (host-endian) of the given type and depth.
 inline std::string encode_png(int width, int height, spng_color_type type, int bit_depth,
@@ -44,7 +44,7 @@ inline std::string encode_depth_png(const DepthImage& depth) {
                       {bytes, bytes + 2 * depth.pixels.size()});
 }
 
-inline std::string encode_jpeg(int width, int height) {
+inline std::string messages::encode_jpeg(int width, int height) {
     std::vector<std::uint8_t> pixels(static_cast<std::size_t>(3 * width * height));
     for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i] = static_cast<std::uint8_t>(i * 7);
     tjhandle encoder = tjInitCompress();
@@ -66,4 +66,4 @@ inline DepthImage numbered_depth(int width, int height) {
     return depth;
 }
 
-}  // namespace planemap
+}  // namespace planemap::sensor

@@ -8,7 +8,7 @@
 #include "messages/process.hpp"
 
 int main(int argc, char** argv) {
-    return planemap::run_main("compare_maps", [&] {
+    return planemap::messages::run_main("compare_maps", [&] {
         if (argc != 3) throw std::invalid_argument("two plane_map.lcmlog, please");
         const planemap::PlaneMap a = planemap::map::read_plane_map(argv[1]),
                                  b = planemap::map::read_plane_map(argv[2]);

@@ -19,14 +19,16 @@ class LogInputTest : public testing::Test {
   protected:
     LogInputTest() {
         camera_.depth = camera_.color = {64, 48, 50, 50, 31.5, 23.5};
-        bus_.subscribe(".*", [this](const RawMessage& m) { seen_.push_back(std::string(m.channel)); });
+        bus_.subscribe(".*",
+                       [this](const messages::RawMessage& m) { seen_.push_back(std::string(m.channel)); });
     }
     ~LogInputTest() override { std::filesystem::remove(file_); }
 
     template <typename T>
-    void add(LogWriter& log, const char* channel, const T& message) {
-        LogEvent event{number_++, number_ * 1000, channel,
-                       std::vector<std::uint8_t>(static_cast<std::size_t>(message.getEncodedSize()))};
+    void add(messages::LogWriter& log, const char* channel, const T& message) {
+        messages::LogEvent event{
+            number_++, number_ * 1000, channel,
+            std::vector<std::uint8_t>(static_cast<std::size_t>(message.getEncodedSize()))};
         message.encode(event.bytes.data(), 0, message.getEncodedSize());
         log.write(event);
     }
@@ -34,8 +36,9 @@ class LogInputTest : public testing::Test {
         bot_core::images_t images;
         images.image_types = {depth ? std::int16_t{bot_core::images_t::DEPTH_MM}
                                     : std::int16_t{bot_core::images_t::LEFT}};
-        images.images = {depth ? depth_image_message(DepthImage(64, 48), 1, DepthEncoding::kRaw)
-                               : color_image_message(RgbImage(64, 48), 1, ColorEncoding::kRaw, 90)};
+        images.images = {
+            depth ? messages::depth_image_message(DepthImage(64, 48), 1, messages::DepthEncoding::kRaw)
+                  : messages::color_image_message(RgbImage(64, 48), 1, messages::ColorEncoding::kRaw, 90)};
         images.n_images = 1;
         return images;
     }
@@ -54,7 +57,7 @@ class LogInputTest : public testing::Test {
         }
     }
 
-    Bus bus_{"memq://"};
+    messages::Bus bus_{"memq://"};
     CameraInfo camera_;
     std::vector<std::string> seen_;
     std::int64_t number_ = 0;
@@ -63,8 +66,8 @@ class LogInputTest : public testing::Test {
 };
 
 TEST_F(LogInputTest, TheChannelWithDepthIsReadAndTheOthersAreNamed) {
-    LogWriter log(file_);
-    add(log, channels::kCameraInfo, to_message(camera_, 0, 0));
+    messages::LogWriter log(file_);
+    add(log, messages::channels::kCameraInfo, messages::to_message(camera_, 0, 0));
     add(log, "WEBCAM", frame(false));
     add(log, "HEAD", frame(false));  // as heads send it before the depth camera's first message
     for (int i = 0; i < 3; ++i) {
@@ -77,16 +80,16 @@ TEST_F(LogInputTest, TheChannelWithDepthIsReadAndTheOthersAreNamed) {
     ASSERT_EQ(input->complaints().size(), 1u);
     EXPECT_EQ(input->complaints()[0],
               "frames of other channels than HEAD are not read: WEBCAM bot_core.images_t (4)");
-    EXPECT_EQ(std::count(seen_.begin(), seen_.end(), std::string(channels::kFrame)), 4);
+    EXPECT_EQ(std::count(seen_.begin(), seen_.end(), std::string(messages::channels::kFrame)), 4);
 }
 
 TEST_F(LogInputTest, ABadCameraDescriptionIsNamedWithItsReason) {
     CameraInfo bad = camera_;
     bad.depth.fx = -3;
-    LogWriter log(file_);
-    add(log, channels::kCameraInfo, to_message(bad, 0, 0));
-    add(log, channels::kFrame, frame(true));
-    add(log, channels::kCameraInfo, to_message(bad, 0, 1));
+    messages::LogWriter log(file_);
+    add(log, messages::channels::kCameraInfo, messages::to_message(bad, 0, 0));
+    add(log, messages::channels::kFrame, frame(true));
+    add(log, messages::channels::kCameraInfo, messages::to_message(bad, 0, 1));
     log.close();
     const std::string said = error();
     EXPECT_EQ(said.rfind(file_.string() + ": none of the 2 camera_info_t in this log can be used (", 0), 0u)
@@ -107,8 +110,8 @@ TEST_F(LogInputTest, AFileThatIsNoLogSaysSoAndOneOfARecordingNamesItsFolder) {
 }
 
 TEST_F(LogInputTest, ColourAloneIsNoRecording) {
-    LogWriter log(file_);
-    add(log, channels::kCameraInfo, to_message(camera_, 0, 0));
+    messages::LogWriter log(file_);
+    add(log, messages::channels::kCameraInfo, messages::to_message(camera_, 0, 0));
     for (int i = 0; i < 3; ++i) add(log, "WEBCAM", frame(false));
     log.close();
     const std::string said = error();
@@ -120,9 +123,9 @@ TEST_F(LogInputTest, ColourAloneIsNoRecording) {
 
 /// What was read before stays; why it ended is said.
 TEST_F(LogInputTest, ALogThatCannotBeReadOnEndsTheInputWithItsReason) {
-    LogWriter log(file_);
-    add(log, channels::kCameraInfo, to_message(camera_, 0, 0));
-    for (int i = 0; i < 200; ++i) add(log, channels::kFrame, frame(true));
+    messages::LogWriter log(file_);
+    add(log, messages::channels::kCameraInfo, messages::to_message(camera_, 0, 0));
+    for (int i = 0; i < 200; ++i) add(log, messages::channels::kFrame, frame(true));
     log.close();
     const auto input = open_input(file_, bus_, std::nullopt);
     ASSERT_TRUE(input->feed());

@@ -36,17 +36,18 @@ class Losses : public testing::Test {
         return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
     }
     /// A simulated walk.
-    std::vector<LogEvent> events(const std::string& world) {
+    std::vector<messages::LogEvent> events(const std::string& world) {
         EXPECT_EQ(run("planemap-simulate", "'" + world + "' --output " + path("walk.lcmlog")), 0);
-        LogReader log(path("walk.lcmlog"));
-        std::vector<LogEvent> all;
-        for (LogEvent event; log.next(event);) all.push_back(event);
+        messages::LogReader log(path("walk.lcmlog"));
+        std::vector<messages::LogEvent> all;
+        for (messages::LogEvent event; log.next(event);) all.push_back(event);
         return all;
     }
-    static std::vector<LogEvent> changed(std::vector<LogEvent> all, const Change& change) {
-        for (LogEvent& event : all) {
-            if (event.channel != channels::kFrame) continue;
-            auto images = decode<bot_core::images_t>(event.bytes);
+    static std::vector<messages::LogEvent> changed(std::vector<messages::LogEvent> all,
+                                                   const Change& change) {
+        for (messages::LogEvent& event : all) {
+            if (event.channel != messages::channels::kFrame) continue;
+            auto images = messages::decode<bot_core::images_t>(event.bytes);
             change(images);
             event.bytes.resize(static_cast<std::size_t>(images.getEncodedSize()));
             images.encode(event.bytes.data(), 0, images.getEncodedSize());
@@ -54,9 +55,9 @@ class Losses : public testing::Test {
         return all;
     }
     /// Writes and maps a log of the events.
-    void map(const std::vector<LogEvent>& events, const std::string& name) {
-        LogWriter log(path(name + ".lcmlog"));
-        for (const LogEvent& event : events) log.write(event);
+    void map(const std::vector<messages::LogEvent>& events, const std::string& name) {
+        messages::LogWriter log(path(name + ".lcmlog"));
+        for (const messages::LogEvent& event : events) log.write(event);
         log.close();
         ASSERT_EQ(run("planemap-run", path(name + ".lcmlog") + " --no-octomap -q --output " + path(name)), 0)
             << read_file(path("err"));
@@ -99,7 +100,7 @@ TEST_F(Losses, StampsThatDecreaseAreWarnedOfOnceAndCounted) {
 }
 
 TEST_F(Losses, FramesThatComeLateOrTwiceChangeNothing) {
-    std::vector<LogEvent> all = events(walk_);
+    std::vector<messages::LogEvent> all = events(walk_);
     map(all, "whole");
     const std::string planes = read_file(folder_ / "whole/planes.json");
     all.insert(all.begin() + 20, all[10]);
@@ -113,11 +114,11 @@ TEST_F(Losses, TheSecondOfTwoSendersIsNamedAndChangesNothing) {
     const auto is = [](std::uint64_t id, std::int64_t later) {
         return [id, later](bot_core::images_t& images) {
             images.utime += later;
-            if (id != 0) set_sender(images.images.back(), id);
+            if (id != 0) messages::set_sender(images.images.back(), id);
         };
     };
-    const std::vector<LogEvent> walk = events(walk_),
-                                other = events("sim:clutter?frames=40&width=320&height=240");
+    const std::vector<messages::LogEvent> walk = events(walk_),
+                                          other = events("sim:clutter?frames=40&width=320&height=240");
     map(walk, "alone");
     const std::string planes = read_file(folder_ / "alone/planes.json");
     struct Case {
@@ -127,9 +128,9 @@ TEST_F(Losses, TheSecondOfTwoSendersIsNamedAndChangesNothing) {
     };
     // With ids; without, an hour earlier, where nothing but the jumps in time tells.
     for (const Case& c : {Case{1, 2, 5000, "ids"}, Case{0, 0, -3600000000, "jumps"}}) {
-        const std::vector<LogEvent> first = changed(walk, is(c.first, 0)),
-                                    second = changed(other, is(c.second, c.later));
-        std::vector<LogEvent> both;
+        const std::vector<messages::LogEvent> first = changed(walk, is(c.first, 0)),
+                                              second = changed(other, is(c.second, c.later));
+        std::vector<messages::LogEvent> both;
         for (std::size_t i = 0; i < std::min(first.size(), second.size()); ++i) {
             both.push_back(first[i]);
             both.push_back(second[i]);

@@ -17,7 +17,7 @@ TEST(RunInfo, HasVersionDateSeedAndOptions) {
     std::string method = "cells", empty;
     double length_m = 0.1;
     bool quiet = true;
-    Flags flags("planemap-test", "A test.");
+    messages::Flags flags("planemap-test", "A test.");
     flags.add("seed", seed, "of all");
     flags.add("camera", empty, "none given");
     flags.add("q,quiet", quiet, "say nothing");

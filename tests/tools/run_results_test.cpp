@@ -50,21 +50,22 @@ class RunResults : public test::Programs {
     std::string dark_log(std::int64_t step_us = 33333) {
         CameraInfo camera;
         camera.depth = camera.color = {64, 48, 50, 50, 31.5, 23.5};
-        LogWriter log(folder_ / "dark.lcmlog");
+        messages::LogWriter log(folder_ / "dark.lcmlog");
         const auto write = [&](const char* channel, const auto& message) {
-            LogEvent event{0, 0, channel,
-                           std::vector<std::uint8_t>(static_cast<std::size_t>(message.getEncodedSize()))};
+            messages::LogEvent event{
+                0, 0, channel, std::vector<std::uint8_t>(static_cast<std::size_t>(message.getEncodedSize()))};
             message.encode(event.bytes.data(), 0, message.getEncodedSize());
             log.write(event);
         };
-        write(channels::kCameraInfo, to_message(camera, 0, 0));
+        write(messages::channels::kCameraInfo, messages::to_message(camera, 0, 0));
         for (int i = 0; i < 5; ++i) {
             bot_core::images_t images;
             images.utime = 1000000 + step_us * i;
             images.n_images = 1;
             images.image_types = {bot_core::images_t::DEPTH_MM_ZIPPED};
-            images.images = {depth_image_message(DepthImage(64, 48), images.utime, DepthEncoding::kZipped)};
-            write(channels::kFrame, images);
+            images.images = {messages::depth_image_message(DepthImage(64, 48), images.utime,
+                                                           messages::DepthEncoding::kZipped)};
+            write(messages::channels::kFrame, images);
         }
         log.close();
         return path("dark.lcmlog");
@@ -122,11 +123,11 @@ TEST_F(RunResults, AGoodMapIsNotReplacedByAnEmptyOne) {
 
 /// The walk of a log with its stamps falling: all frames but the first are refused.
 void let_stamps_fall(const std::filesystem::path& from, const std::filesystem::path& to) {
-    LogReader walk(from);
-    LogWriter log(to);
-    for (LogEvent event; walk.next(event);) {
-        if (event.channel == channels::kFrame) {
-            auto images = decode<bot_core::images_t>(event.bytes);
+    messages::LogReader walk(from);
+    messages::LogWriter log(to);
+    for (messages::LogEvent event; walk.next(event);) {
+        if (event.channel == messages::channels::kFrame) {
+            auto images = messages::decode<bot_core::images_t>(event.bytes);
             images.utime = 100000000 - images.utime;
             event.bytes.resize(static_cast<std::size_t>(images.getEncodedSize()));
             images.encode(event.bytes.data(), 0, images.getEncodedSize());

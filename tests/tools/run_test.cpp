@@ -68,12 +68,12 @@ TEST_F(RunTest, WritesEverythingAndTheSameBytesAgain) {
     }
     EXPECT_LT(r.at("accuracy").at("ate_rmse_m").get<double>(), 0.05);
 
-    LogReader log(folder_ / "a" / "plane_map.lcmlog");
-    LogEvent event;
+    messages::LogReader log(folder_ / "a" / "plane_map.lcmlog");
+    messages::LogEvent event;
     ASSERT_TRUE(log.next(event));
-    EXPECT_EQ(event.channel, channels::kMap);
+    EXPECT_EQ(event.channel, messages::channels::kMap);
     EXPECT_EQ(event.bytes.size(), r.at("sizes_bytes").at("plane_map_message").get<std::size_t>());
-    const PlaneMap map = from_message(decode<plane_map_t>(event.bytes));
+    const PlaneMap map = messages::from_message(messages::decode<plane_map_t>(event.bytes));
     const Json planes = Json::parse(read_file(folder_ / "a" / "planes.json"));
     EXPECT_EQ(map.planes.size(), planes.at("planes").size());
     EXPECT_EQ(map.planes.size(), r.at("planes").get<std::size_t>());
@@ -174,29 +174,30 @@ TEST_F(RunTest, WhatIsDamagedInALogIsSaidAndCounted) {
               0);
     // Every third colour image corrupt; one event's length damaged; another camera's colour images among
     // them.
-    LogReader reader(folder_ / "office.lcmlog");
+    messages::LogReader reader(folder_ / "office.lcmlog");
     std::string log;
     int frames = 0;
-    for (LogEvent event; reader.next(event);) {
-        if (event.channel == channels::kFrame && ++frames % 3 == 0) {
-            auto images = decode<bot_core::images_t>(event.bytes);
+    for (messages::LogEvent event; reader.next(event);) {
+        if (event.channel == messages::channels::kFrame && ++frames % 3 == 0) {
+            auto images = messages::decode<bot_core::images_t>(event.bytes);
             images.images[0].data.resize(images.images[0].data.size() / 2);
             images.images[0].size /= 2;
             event.bytes.resize(static_cast<std::size_t>(images.getEncodedSize()));
             images.encode(event.bytes.data(), 0, images.getEncodedSize());
         }
-        std::string bytes = encode_event(event);
-        if (frames == 10 && event.channel == channels::kFrame) bytes[25] = static_cast<char>(bytes[25] ^ 1);
+        std::string bytes = messages::encode_event(event);
+        if (frames == 10 && event.channel == messages::channels::kFrame)
+            bytes[25] = static_cast<char>(bytes[25] ^ 1);
         log += bytes;
     }
     bot_core::images_t webcam;
     webcam.image_types = {bot_core::images_t::LEFT};
-    webcam.images = {color_image_message(RgbImage(64, 48), 1, ColorEncoding::kJpeg, 90)};
+    webcam.images = {messages::color_image_message(RgbImage(64, 48), 1, messages::ColorEncoding::kJpeg, 90)};
     webcam.n_images = 1;
-    LogEvent other{0, 1, "WEBCAM",
-                   std::vector<std::uint8_t>(static_cast<std::size_t>(webcam.getEncodedSize()))};
+    messages::LogEvent other{0, 1, "WEBCAM",
+                             std::vector<std::uint8_t>(static_cast<std::size_t>(webcam.getEncodedSize()))};
     webcam.encode(other.bytes.data(), 0, webcam.getEncodedSize());
-    write_file(folder_ / "bad.lcmlog", encode_event(other) + log + encode_event(other));
+    write_file(folder_ / "bad.lcmlog", messages::encode_event(other) + log + messages::encode_event(other));
     const Result result =
         run("planemap-run", path("bad.lcmlog") + " -q --no-octomap --output " + path("out"));
     EXPECT_EQ(result.exit_code, 0) << result.err;
@@ -214,10 +215,10 @@ TEST_F(RunTest, WhatIsDamagedInALogIsSaidAndCounted) {
 }
 
 TEST_F(RunTest, ALogOfOtherThingsSaysWhatIsInIt) {
-    LogWriter writer(folder_ / "other.lcmlog");
+    messages::LogWriter writer(folder_ / "other.lcmlog");
     bot_core::pose_t pose{};
-    LogEvent event{0, 0, "POSE_BODY",
-                   std::vector<std::uint8_t>(static_cast<std::size_t>(pose.getEncodedSize()))};
+    messages::LogEvent event{0, 0, "POSE_BODY",
+                             std::vector<std::uint8_t>(static_cast<std::size_t>(pose.getEncodedSize()))};
     pose.encode(event.bytes.data(), 0, pose.getEncodedSize());
     for (int i = 0; i < 3; ++i) writer.write(event);
     writer.write({3, 0, "MYSTERY", {1, 2, 3, 4, 5, 6, 7, 8, 9}});
@@ -233,12 +234,13 @@ TEST_F(RunTest, ALogOfOtherThingsSaysWhatIsInIt) {
 TEST_F(RunTest, ALogWithoutItsCameraNeedsOne) {
     ASSERT_EQ(run("planemap-simulate", "'sim:office?frames=5' --output " + path("office.lcmlog")).exit_code,
               0);
-    LogReader reader(folder_ / "office.lcmlog");
-    LogWriter writer(folder_ / "bare.lcmlog");
+    messages::LogReader reader(folder_ / "office.lcmlog");
+    messages::LogWriter writer(folder_ / "bare.lcmlog");
     std::optional<CameraInfo> camera;
-    for (LogEvent event; reader.next(event);) {
-        if (event.channel == channels::kFrame) writer.write(event);
-        if (event.channel == channels::kCameraInfo) camera = from_message(decode<camera_info_t>(event.bytes));
+    for (messages::LogEvent event; reader.next(event);) {
+        if (event.channel == messages::channels::kFrame) writer.write(event);
+        if (event.channel == messages::channels::kCameraInfo)
+            camera = messages::from_message(messages::decode<camera_info_t>(event.bytes));
     }
     writer.close();
     expect_error("planemap-run", path("bare.lcmlog") + " --output " + path("out"), "--camera");
@@ -295,17 +297,18 @@ TEST_F(RunTest, DepthThatIsAllZeroIsSaid) {
     CameraInfo camera;
     camera.depth = camera.color = {64, 48, 50, 50, 31.5, 23.5};
     const auto event = [](const char* channel, std::int64_t utime, const auto& message) {
-        LogEvent e{0, utime, channel,
-                   std::vector<std::uint8_t>(static_cast<std::size_t>(message.getEncodedSize()))};
+        messages::LogEvent e{0, utime, channel,
+                             std::vector<std::uint8_t>(static_cast<std::size_t>(message.getEncodedSize()))};
         message.encode(e.bytes.data(), 0, message.getEncodedSize());
         return e;
     };
-    LogWriter log(folder_ / "dark.lcmlog");
-    log.write(event(channels::kCameraInfo, 0, to_message(camera, 0, 0)));
+    messages::LogWriter log(folder_ / "dark.lcmlog");
+    log.write(event(messages::channels::kCameraInfo, 0, messages::to_message(camera, 0, 0)));
     for (int i = 0; i < 5; ++i) {
         images.utime = 33333 * i;
-        images.images = {depth_image_message(DepthImage(64, 48), images.utime, DepthEncoding::kZipped)};
-        log.write(event(channels::kFrame, images.utime, images));
+        images.images = {messages::depth_image_message(DepthImage(64, 48), images.utime,
+                                                       messages::DepthEncoding::kZipped)};
+        log.write(event(messages::channels::kFrame, images.utime, images));
     }
     log.close();
     expect_error("planemap-run", path("dark.lcmlog") + " --output " + path("out"),
@@ -333,8 +336,8 @@ void write_odd_folder(const std::filesystem::path& folder) {
     std::string depths = "\xef\xbb\xbf# depth\r\n", colors;
     for (int i = 0; i < 8; ++i) {
         const std::string n = std::to_string(i), ns = std::to_string(1403636579763555584 + i * 100000000LL);
-        if (i != 3) write_depth_png(folder / "my scan" / ("depth " + n + ".png"), depth);
-        write_color_png(folder / "my scan" / ("rgb " + n + ".png"), color);
+        if (i != 3) sensor::write_depth_png(folder / "my scan" / ("depth " + n + ".png"), depth);
+        sensor::write_color_png(folder / "my scan" / ("rgb " + n + ".png"), color);
         depths += ns + "\tmy scan/depth " + n + ".png \r\n";
         colors += ns + " my scan/rgb " + n + ".png\n";
     }

@@ -17,18 +17,18 @@ namespace {
 constexpr std::int64_t kEvery = 1000;  // frames a line
 
 /// CPU time of all modules so far.
-double pipeline_ms(Pipeline& pipeline) {
+double pipeline_ms(pipeline::Pipeline& pipeline) {
     return pipeline.decoder().decode_ms().sum() + pipeline.segmentation().status().work_cpu_ms().sum() +
            pipeline.odometry().status().work_cpu_ms().sum() + pipeline.graph()->status().work_cpu_ms().sum() +
            pipeline.map().status().work_cpu_ms().sum();
 }
 
-Json point_at(std::int64_t frames, Pipeline& pipeline) {
+Json point_at(std::int64_t frames, pipeline::Pipeline& pipeline) {
     const map::PlaneMapper& mapper = pipeline.map().mapper();
     return {{"frames", frames},
             {"keyframes", pipeline.keyframes().keyframes.size()},
             {"planes", mapper.map().planes.size()},
-            {"message_bytes", to_message(mapper.map(), 0).getEncodedSize()},
+            {"message_bytes", messages::to_message(mapper.map(), 0).getEncodedSize()},
             {"memory_bytes", mapper.memory_bytes()}};
 }
 
@@ -37,7 +37,7 @@ class Observer {
   public:
     Observer(std::int64_t round, Growth& growth) : round_(round), growth_(growth) {}
 
-    void see(std::int64_t frames, Pipeline& pipeline) {
+    void see(std::int64_t frames, pipeline::Pipeline& pipeline) {
         const double total_ms = pipeline.map().status().work_cpu_ms().sum();
         const auto updates = pipeline.map().status().work_cpu_ms().count();
         if (updates > updates_) map_ms_.add((total_ms - map_total_ms_) / double(updates - updates_));
@@ -46,7 +46,7 @@ class Observer {
         if (frames > 0 && frames % round_ == 0) growth_.rounds.push_back(point_at(frames, pipeline));
         if (frames > 0 && frames % kEvery == 0) note(frames, pipeline);
     }
-    void note(std::int64_t frames, Pipeline& pipeline) {
+    void note(std::int64_t frames, pipeline::Pipeline& pipeline) {
         if (frames == frames_) return;
         Json point = point_at(frames, pipeline);
         const double total_ms = pipeline_ms(pipeline);
@@ -88,13 +88,13 @@ std::int64_t frames_a_round(const std::string& simulator_name) {
     return std::lround(simulator::tour_duration(source.world().tour, hand, options.seed) * options.rate_hz);
 }
 
-Growth measure_growth(const std::string& simulator_name, std::int64_t frames, PipelineOptions options,
-                      const std::function<void(std::int64_t)>& on_frame) {
+Growth measure_growth(const std::string& simulator_name, std::int64_t frames,
+                      pipeline::PipelineOptions options, const std::function<void(std::int64_t)>& on_frame) {
     Growth growth;
     Observer observer(frames_a_round(simulator_name), growth);
     options.with_octomap = false;
-    Bus bus("memq://");
-    Pipeline pipeline(bus, options);
+    messages::Bus bus("memq://");
+    pipeline::Pipeline pipeline(bus, options);
     const std::unique_ptr<Input> input = open_input(simulator_name, bus, options.camera);
     feed_all(*input, frames, [&](std::int64_t so_far) {
         pipeline.settle();

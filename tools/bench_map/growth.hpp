@@ -34,8 +34,8 @@ std::int64_t frames_a_round(const std::string& simulator_name);
 
 /// Runs the whole pipeline, without OctoMap, over all frames of a simulated world. Calls `on_frame` with the
 /// frames so far.
-Growth measure_growth(const std::string& simulator_name, std::int64_t frames, PipelineOptions options,
-                      const std::function<void(std::int64_t)>& on_frame);
+Growth measure_growth(const std::string& simulator_name, std::int64_t frames,
+                      pipeline::PipelineOptions options, const std::function<void(std::int64_t)>& on_frame);
 
 std::string growth_table(const Growth& growth);
 Json to_json(const std::string& sequence, const Growth& growth);

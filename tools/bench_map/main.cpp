@@ -32,7 +32,7 @@ const std::vector<PosesInfo>& known_poses() {
 struct Arguments : benchmark::Options {
     std::string poses = benchmark::names_of(known_poses());
     bool growth = false, no_octomap = false, verbose = false;
-    PipelineOptions pipeline;
+    pipeline::PipelineOptions pipeline;
 };
 
 /// At walking speed, more than two rounds.
@@ -85,7 +85,7 @@ std::string description() {
            "readings (every fifth frame) within 3 cm and inside the outline, and how far off the map's is.";
 }
 
-void add_flags(Flags& flags, Arguments& arguments) {
+void add_flags(messages::Flags& flags, Arguments& arguments) {
     benchmark::add_flags(flags, arguments, "frames a sequence, from its start; 0: all");
     flags.add("poses", arguments.poses, "comma-separated, see above");
     flags.add("growth", arguments.growth, "how the map grows instead, for simulated walks that go round");
@@ -184,6 +184,6 @@ int main(int argc, char** argv) {
     arguments.sequences = "sim:office?seed=1..5,redkitchen";
     return benchmark::run_program(
         bench_map::kProgram, bench_map::description(), argc, argv,
-        [&](Flags& flags) { bench_map::add_flags(flags, arguments); },
+        [&](messages::Flags& flags) { bench_map::add_flags(flags, arguments); },
         [&] { return bench_map::run(arguments); });
 }

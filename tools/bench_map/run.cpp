@@ -21,7 +21,7 @@ MapRun map_run_of(const map::PlaneMapper& mapper, const Histogram& update_ms,
     MapRun run;
     run.map = mapper.map();
     run.poses = poses;
-    run.message_bytes = static_cast<std::size_t>(to_message(run.map, 0).getEncodedSize());
+    run.message_bytes = static_cast<std::size_t>(messages::to_message(run.map, 0).getEncodedSize());
     run.memory_bytes = mapper.memory_bytes();
     run.update_median_ms = update_ms.median();
     run.update_p95_ms = update_ms.p95();
@@ -29,7 +29,7 @@ MapRun map_run_of(const map::PlaneMapper& mapper, const Histogram& update_ms,
 }
 
 /// The map beside an OctoMap at the same poses.
-Coverage coverage_at(const MapRun& run, OctomapBuilder& octomap) {
+Coverage coverage_at(const MapRun& run, octomap::OctomapBuilder& octomap) {
     octomap.update(run.poses);
     octomap.flush();
     return coverage_of(run.map, octomap.occupied_voxels(), octomap.tree().getResolution());
@@ -40,10 +40,10 @@ Coverage coverage_at(const MapRun& run, OctomapBuilder& octomap) {
 SequenceRun run_sequence(const std::string& input_name, const RunOptions& options,
                          const std::function<void(std::int64_t)>& on_frame) {
     SequenceRun run;
-    Bus bus("memq://");
-    Pipeline pipeline(bus, options.pipeline);
-    bus.subscribe(channels::kKeyframe, [&run](const RawMessage& message) {
-        run.keyframes.push_back(from_message(decode<keyframe_t>(message.bytes)));
+    messages::Bus bus("memq://");
+    pipeline::Pipeline pipeline(bus, options.pipeline);
+    bus.subscribe(messages::channels::kKeyframe, [&run](const messages::RawMessage& message) {
+        run.keyframes.push_back(messages::from_message(messages::decode<keyframe_t>(message.bytes)));
         run.keyframes.back().features = {};
     });
     const std::unique_ptr<Input> input = open_input(input_name, bus, options.pipeline.camera);
@@ -57,7 +57,7 @@ SequenceRun run_sequence(const std::string& input_name, const RunOptions& option
     run.truth = input->truth();
 
     const map::MapOptions& map_options = options.pipeline.map.map;
-    OctomapShell* octomap = pipeline.octomap();
+    octomap::OctomapShell* octomap = pipeline.octomap();
     map::MapShell& shell = pipeline.map();
     run.estimated = map_run_of(shell.mapper(), shell.status().work_cpu_ms(), pipeline.keyframes());
     run.estimated.rebuild_ms = time_rebuild(run.keyframes, run.estimated.poses, map_options);
@@ -83,9 +83,9 @@ MapRun map_at(const std::vector<Keyframe>& keyframes, const KeyframeTrajectory& 
         so_far.keyframes.push_back(pose);
         so_far.utime = pose.utime;
         mapper.add(*keyframe);
-        const double start_ms = thread_cpu_ms();
+        const double start_ms = messages::thread_cpu_ms();
         mapper.update(so_far);
-        update_ms.add(thread_cpu_ms() - start_ms);
+        update_ms.add(messages::thread_cpu_ms() - start_ms);
     }
     mapper.settle();
     return map_run_of(mapper, update_ms, poses);

@@ -34,7 +34,7 @@ struct SequenceRun {
 struct RunOptions {
     std::int64_t frames = 0;  ///< at most; 0: all
     bool true_poses = true;   ///< where the input has a truth
-    PipelineOptions pipeline;
+    pipeline::PipelineOptions pipeline;
 };
 
 /// The pipeline over a sequence (as planemap-run takes it), once for both maps. Calls `on_frame` with the

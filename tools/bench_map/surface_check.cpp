@@ -70,14 +70,14 @@ std::vector<SurfaceCheck> check_surfaces(const std::string& input_name, std::int
                                          const std::optional<CameraInfo>& camera, const PlaneMap& map,
                                          const Trajectory& truth) {
     SurfaceChecker checker(map);
-    Bus bus("memq://");
-    FrameDecoder decoder(bus, camera);
+    messages::Bus bus("memq://");
+    messages::FrameDecoder decoder(bus, camera);
     std::int64_t count = 0;
-    bus.subscribe(channels::kFrame, [&](const RawMessage& message) {
+    bus.subscribe(messages::channels::kFrame, [&](const messages::RawMessage& message) {
         if (count++ % kEvery != 0) return;
         const auto frame = decoder.decode(message);
         if (!frame) return;
-        const std::optional<Pose> pose = given_pose(truth, frame->utime());
+        const std::optional<Pose> pose = pipeline::given_pose(truth, frame->utime());
         if (pose) checker.add(frame->depth(), frame->camera(), *pose);
     });
     const std::unique_ptr<Input> input = open_input(input_name, bus, camera);

@@ -26,7 +26,7 @@ std::vector<std::pair<Pose, Pose>> common(const KeyframeTrajectory& to, const Ke
 KeyframeTrajectory at_poses(const std::vector<Keyframe>& keyframes, const Trajectory& trajectory) {
     KeyframeTrajectory poses;
     for (const Keyframe& keyframe : keyframes) {
-        const std::optional<Pose> pose = given_pose(trajectory, keyframe.utime);
+        const std::optional<Pose> pose = pipeline::given_pose(trajectory, keyframe.utime);
         if (!pose) continue;
         poses.keyframes.push_back({keyframe.id, keyframe.utime, *pose});
         poses.utime = keyframe.utime;

@@ -26,7 +26,7 @@ struct Sequence {
 struct BenchmarkOptions : benchmark::Options {
     int slow_frames = 300;        ///< at most this many for a method that is slow; 0: as the others
     std::filesystem::path cache;  ///< folder of the logs of simulated sequences; made if it is not there
-    PipelineOptions pipeline;     ///< of the project's own methods
+    pipeline::PipelineOptions pipeline;  ///< of the project's own methods
 
     /// Throws std::invalid_argument that names every bad field.
     void validate() const;

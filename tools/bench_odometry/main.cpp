@@ -60,7 +60,7 @@ std::string description() {
            "frame.";
 }
 
-void add_flags(Flags& flags, Arguments& arguments) {
+void add_flags(messages::Flags& flags, Arguments& arguments) {
     benchmark::add_flags(flags, arguments, "frames a sequence, from its start; 0: all");
     flags.add("methods", arguments.methods, "comma-separated names, see above");
     flags.add("slow-frames", arguments.slow_frames,
@@ -132,6 +132,6 @@ int main(int argc, char** argv) {
     arguments.cache = benchmark::default_cache_folder(bench_odometry::kProgram);
     return benchmark::run_program(
         bench_odometry::kProgram, bench_odometry::description(), argc, argv,
-        [&](Flags& flags) { bench_odometry::add_flags(flags, arguments); },
+        [&](messages::Flags& flags) { bench_odometry::add_flags(flags, arguments); },
         [&] { return bench_odometry::run(arguments); });
 }

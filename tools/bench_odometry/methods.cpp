@@ -11,7 +11,7 @@ namespace planemap::bench_odometry {
 
 namespace {
 
-PipelineOptions options_of(const std::string& method, PipelineOptions options) {
+pipeline::PipelineOptions options_of(const std::string& method, pipeline::PipelineOptions options) {
     if (method.starts_with("paper")) options.odometry.method = "paper";
     options.with_graph = !method.ends_with("-no-graph");
     options.with_map = options.with_octomap = false;
@@ -19,7 +19,7 @@ PipelineOptions options_of(const std::string& method, PipelineOptions options) {
 }
 
 /// The graph's closures, at the moments that its keyframes' poses are of.
-std::vector<Closure> closures_of(Pipeline& pipeline) {
+std::vector<Closure> closures_of(pipeline::Pipeline& pipeline) {
     const auto pose_utime = [&](std::int64_t utime) {
         const auto& estimates = pipeline.estimates();
         const auto estimate =
@@ -27,16 +27,17 @@ std::vector<Closure> closures_of(Pipeline& pipeline) {
         return estimate == estimates.end() ? utime : estimate->pose_utime;
     };
     std::vector<Closure> closures;
-    for (const LoopClosure& closure : pipeline.graph()->graph().loop_closures())
+    for (const graph::LoopClosure& closure : pipeline.graph()->graph().loop_closures())
         closures.push_back(
             {pose_utime(closure.from_utime), pose_utime(closure.to_utime), closure.from_from_to});
     return closures;
 }
 
-MethodRun run_planemap(const std::string& input_name, std::int64_t max_frames, const PipelineOptions& options,
+MethodRun run_planemap(const std::string& input_name, std::int64_t max_frames,
+                       const pipeline::PipelineOptions& options,
                        const std::function<void(std::int64_t)>& on_frame) {
-    Bus bus("memq://");
-    Pipeline pipeline(bus, options);
+    messages::Bus bus("memq://");
+    pipeline::Pipeline pipeline(bus, options);
     const std::unique_ptr<Input> input = open_input(input_name, bus, options.camera);
     feed_all(*input, max_frames, [&](std::int64_t frames) {
         pipeline.settle();
@@ -76,7 +77,8 @@ std::vector<MethodInfo> parse_methods(const std::string& list) {
 }
 
 MethodRun run_method(const std::string& method, const std::string& input, std::int64_t max_frames,
-                     const PipelineOptions& options, const std::function<void(std::int64_t)>& on_frame) {
+                     const pipeline::PipelineOptions& options,
+                     const std::function<void(std::int64_t)>& on_frame) {
     if (method.starts_with("opencv-")) return run_peer(method, input, max_frames, on_frame);
     return run_planemap(input, max_frames, options_of(method, options), on_frame);
 }

@@ -26,6 +26,7 @@ std::vector<MethodInfo> parse_methods(const std::string& list);
 /// from its start (0: all), in this process. `options` are those of the project's own methods; what makes a
 /// method this method is set on top. Calls on_frame with the frames so far. Throws as open_input().
 MethodRun run_method(const std::string& method, const std::string& input, std::int64_t max_frames,
-                     const PipelineOptions& options, const std::function<void(std::int64_t)>& on_frame);
+                     const pipeline::PipelineOptions& options,
+                     const std::function<void(std::int64_t)>& on_frame);
 
 }  // namespace planemap::bench_odometry

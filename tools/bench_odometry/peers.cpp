@@ -36,7 +36,7 @@ class FrameToFrame {
               cv::rgbd::Odometry::create(method == "opencv-rgbd" ? "RgbdOdometry" : "RgbdICPOdometry")) {}
 
     /// The pose of the frame in the first one's camera frame; nothing when lost.
-    std::optional<Pose> track(const Frame& frame) {
+    std::optional<Pose> track(const messages::Frame& frame) {
         const GrayImage* gray = frame.gray();
         if (gray == nullptr) return std::nullopt;
         const CameraInfo& camera = frame.camera();
@@ -46,9 +46,9 @@ class FrameToFrame {
                 cv::Mat(cv::Matx33d(camera_.fx, 0, camera_.cx, 0, camera_.fy, camera_.cy, 0, 0, 1)));
         }
         auto next = cv::rgbd::OdometryFrame::create(luma(*gray), metric(frame.depth_in_color(), camera));
-        const double start_ms = thread_cpu_ms();
+        const double start_ms = messages::thread_cpu_ms();
         const bool tracked = align(next);
-        ms_.add(thread_cpu_ms() - start_ms);
+        ms_.add(messages::thread_cpu_ms() - start_ms);
         if (!tracked) return std::nullopt;
         last_ = next;
         return first_from_last_;
@@ -81,11 +81,11 @@ class FrameToFrame {
 MethodRun run_peer(const std::string& method, const std::string& input_name, std::int64_t max_frames,
                    const std::function<void(std::int64_t)>& on_frame) {
     cv::setNumThreads(1);
-    Bus bus("memq://");
-    FrameDecoder decoder(bus);
+    messages::Bus bus("memq://");
+    messages::FrameDecoder decoder(bus);
     FrameToFrame odometry(method);
     MethodRun run;
-    bus.subscribe(channels::kFrame, [&](const RawMessage& message) {
+    bus.subscribe(messages::channels::kFrame, [&](const messages::RawMessage& message) {
         const auto frame = decoder.decode(message);
         if (!frame) return;
         const std::optional<Pose> pose = odometry.track(*frame);

@@ -116,8 +116,8 @@ void Benchmark::draw(const Sequence& sequence, std::size_t index, const std::str
                      const DepthImage& depth, const segmentation::Segmentation& segmentation) const {
     const std::filesystem::path folder = options_.overlays / benchmark::file_name_of(sequence.name);
     std::filesystem::create_directories(folder);
-    write_color_png(folder / (benchmark::text("%04zu-", index) + name + ".png"),
-                    draw_overlay(depth, sequence.camera, segmentation));
+    sensor::write_color_png(folder / (benchmark::text("%04zu-", index) + name + ".png"),
+                            draw_overlay(depth, sequence.camera, segmentation));
 }
 
 }  // namespace planemap::bench

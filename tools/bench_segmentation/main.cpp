@@ -53,7 +53,7 @@ std::string description() {
            "Under subsampling, labels spread to the nearest pixels that lie within max(1.5 cm, 3 sigma).";
 }
 
-void add_flags(Flags& flags, Arguments& arguments) {
+void add_flags(messages::Flags& flags, Arguments& arguments) {
     benchmark::add_flags(flags, arguments,
                          "frames a sequence, evenly spread; 0: each sequence's own, 3 to 100");
     flags.add("methods", arguments.methods, "comma-separated names, see above");
@@ -104,5 +104,6 @@ int main(int argc, char** argv) {
     arguments.sequences = benchmark::names_of(bench::known_sequences());
     return benchmark::run_program(
         bench::kProgram, bench::description(), argc, argv,
-        [&](Flags& flags) { bench::add_flags(flags, arguments); }, [&] { return bench::run(arguments); });
+        [&](messages::Flags& flags) { bench::add_flags(flags, arguments); },
+        [&] { return bench::run(arguments); });
 }

@@ -158,13 +158,13 @@ Method::Method(const MethodName& name)
     : finder_(make_finder(name)), step_(is_ransac(name.name) ? 1 : name.subsampling) {}
 
 double Method::run(const DepthImage& depth, const CameraInfo& camera) {
-    const double start = thread_cpu_ms();
+    const double start = messages::thread_cpu_ms();
     if (step_ == 1) {
         finder_->find(depth, camera);
     } else {
         finder_->find(decimated(depth, step_), decimated(camera, step_));
     }
-    return thread_cpu_ms() - start;
+    return messages::thread_cpu_ms() - start;
 }
 
 const segmentation::Segmentation& Method::result(const DepthImage& depth, const CameraInfo& camera) {

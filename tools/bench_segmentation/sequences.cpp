@@ -24,15 +24,15 @@ constexpr int kFrames = 60;  // of a sequence that does not say
 
 /// A recording in the TUM layout: depth, and poses where there are some.
 Sequence open_recording(const std::filesystem::path& folder, std::size_t frames) {
-    const auto dataset = std::make_shared<const Dataset>(folder);
+    const auto dataset = std::make_shared<const sensor::Dataset>(folder);
     const CameraInfo& camera = dataset->camera();
     Trajectory truth;
     if (std::filesystem::exists(folder / "groundtruth.txt"))
         truth = read_trajectory(folder / "groundtruth.txt");
     const auto load = [=](std::size_t index) {
-        const ListedImage& listed = dataset->frames()[index].depth;
+        const sensor::ListedImage& listed = dataset->frames()[index].depth;
         BenchFrame frame;
-        frame.depth = read_image(folder / listed.file, camera, decode_depth_png);
+        frame.depth = read_image(folder / listed.file, camera, sensor::decode_depth_png);
         if (const auto world_from_color = pose_at(truth, listed.utime, kMaxPoseGap_us))
             frame.world_from_depth = *world_from_color * camera.color_from_depth;
         return frame;
@@ -59,14 +59,14 @@ std::vector<Plane> fit_surfaces(const Image<std::uint16_t>& surfaces, const Dept
 
 /// Images with a label image each: one colour a plane, black for none. True planes are fitted to the depth.
 Sequence open_labelled(const std::filesystem::path& folder, std::size_t frames) {
-    const CameraInfo camera = read_camera_file(folder / "camera.json");
+    const CameraInfo camera = sensor::read_camera_file(folder / "camera.json");
     std::size_t count = 0;
     while (std::filesystem::exists(folder / (std::to_string(count) + ".depth.png"))) ++count;
     const auto load = [=](std::size_t index) {
         const std::string stem = (folder / std::to_string(index)).string();
         BenchFrame frame;
-        frame.depth = read_image(stem + ".depth.png", camera, decode_depth_png);
-        const RgbImage colors = read_image(stem + ".labels.png", camera, decode_color_png);
+        frame.depth = read_image(stem + ".depth.png", camera, sensor::decode_depth_png);
+        const RgbImage colors = read_image(stem + ".labels.png", camera, sensor::decode_color_png);
         Image<std::uint16_t> surfaces(colors.width, colors.height);
         std::map<std::tuple<int, int, int>, std::uint16_t> surface_of{{{0, 0, 0}, std::uint16_t{0}}};
         for (std::size_t i = 0; i < colors.pixels.size(); ++i) {

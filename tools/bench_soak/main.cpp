@@ -20,7 +20,7 @@ struct Options {
 };
 
 int run(const Options& options) {
-    catch_stop_signals();
+    messages::catch_stop_signals();
     const std::filesystem::path folder =
         std::filesystem::temp_directory_path() / ("planemap_soak_" + std::to_string(::getpid()));
     const bench_soak::Round round = bench_soak::render_round(options.world, folder);
@@ -30,7 +30,7 @@ int run(const Options& options) {
     const auto points = bench_soak::soak(round, options.soak, [](const benchmark::Json& point) {
         print(bench_soak::table().line(point));
         finish_printing();
-        return !stop_requested();
+        return !messages::stop_requested();
     });
     std::filesystem::remove_all(folder);
     const std::optional<double> growth = bench_soak::growth(points, options.soak.period_s);
@@ -48,9 +48,9 @@ int run(const Options& options) {
 
 int main(int argc, char** argv) {
     planemap::Options options;
-    planemap::PipelineOptions& pipeline = options.soak.pipeline;
+    planemap::pipeline::PipelineOptions& pipeline = options.soak.pipeline;
     pipeline.with_octomap = false;
-    const auto add = [&](planemap::Flags& flags) {
+    const auto add = [&](planemap::messages::Flags& flags) {
         flags.add("simulated", options.simulated, "Walk through the simulator; there is no other way yet");
         flags.add("world", options.world, "Simulator name; its walk must go round");
         flags.add("frames", options.soak.frames, "Frames in all");

@@ -58,34 +58,34 @@ class Feed {
         : round_(round), period_us_(std::llround(1e6 * period_s)), log_(std::in_place, round.log) {}
 
     /// Publishes up to and including the next frame; returns its index in the round.
-    std::size_t next(Bus& bus) {
-        LogEvent event;
+    std::size_t next(messages::Bus& bus) {
+        messages::LogEvent event;
         for (;;) {
             if (!log_->next(event)) {
                 log_.emplace(round_.log);
                 at_ = 0;
                 continue;
             }
-            if (event.channel == channels::kFrame) break;
+            if (event.channel == messages::channels::kFrame) break;
             bus.publish_bytes(event.channel, event.bytes);
         }
-        auto images = decode<bot_core::images_t>(event.bytes);
+        auto images = messages::decode<bot_core::images_t>(event.bytes);
         const std::int64_t later = kStartUtime + frames_ * period_us_ - images.utime;
         images.utime += later;
         for (bot_core::image_t& image : images.images) {
             image.utime += later;
             image.metadata.clear();
-            set_seq(image, static_cast<std::uint32_t>(frames_));
+            messages::set_seq(image, static_cast<std::uint32_t>(frames_));
         }
         ++frames_;
-        bus.publish(channels::kFrame, images);
+        bus.publish(messages::channels::kFrame, images);
         return at_++;
     }
 
   private:
     const Round& round_;
     std::int64_t period_us_;
-    std::optional<LogReader> log_;
+    std::optional<messages::LogReader> log_;
     std::int64_t frames_ = 0;
     std::size_t at_ = 0;
 };
@@ -93,7 +93,7 @@ class Feed {
 /// Counts what happens between two points.
 class Observer {
   public:
-    Observer(const Round& round, Pipeline& pipeline) : round_(round), pipeline_(pipeline) {}
+    Observer(const Round& round, pipeline::Pipeline& pipeline) : round_(round), pipeline_(pipeline) {}
 
     void keyframe() { ++keyframes_; }
     void see(std::size_t frame) {
@@ -110,7 +110,7 @@ class Observer {
         off_m_ = std::max(off_m_, (world_from_camera.translation() - truth.translation()).norm());
     }
     Json point() {
-        const PoseGraph& graph = pipeline_.graph()->graph();
+        const graph::PoseGraph& graph = pipeline_.graph()->graph();
         const map::PlaneMapper& mapper = pipeline_.map().mapper();
         const double now_ms = cpu_ms(),
                      frames = static_cast<double>(std::max<std::int64_t>(frames_ - last_, 1));
@@ -135,7 +135,7 @@ class Observer {
 
   private:
     const Round& round_;
-    Pipeline& pipeline_;
+    pipeline::Pipeline& pipeline_;
     std::int64_t frames_ = 0, lost_ = 0, keyframes_ = 0, last_ = 0;
     double last_ms_ = cpu_ms(), off_m_ = 0;
 };
@@ -159,12 +159,12 @@ std::vector<Json> soak(const Round& round, const SoakOptions& options,
                        const std::function<bool(const Json&)>& on_point) {
     if (options.frames < 1 || options.every < 1 || !(options.period_s >= 0.001 && options.period_s <= 3600))
         throw std::invalid_argument("frames and every must be at least 1, the period 0.001 to 3600 s");
-    PipelineOptions pipeline_options = options.pipeline;
+    pipeline::PipelineOptions pipeline_options = options.pipeline;
     pipeline_options.keep_estimates = false;
-    Bus bus("memq://");
-    Pipeline pipeline(bus, pipeline_options);
+    messages::Bus bus("memq://");
+    pipeline::Pipeline pipeline(bus, pipeline_options);
     Observer observer(round, pipeline);
-    bus.subscribe(channels::kKeyframe, [&](const RawMessage&) { observer.keyframe(); });
+    bus.subscribe(messages::channels::kKeyframe, [&](const messages::RawMessage&) { observer.keyframe(); });
     Feed feed(round, options.period_s);
     std::vector<Json> points;
     for (int frames = 1; frames <= options.frames; ++frames) {

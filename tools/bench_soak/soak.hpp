@@ -31,7 +31,7 @@ struct SoakOptions {
     int frames = 86400;
     int every = 1800;     ///< frames a line
     double period_s = 1;  ///< between stamps; the camera moves as from frame to frame of the round
-    PipelineOptions pipeline;
+    pipeline::PipelineOptions pipeline;
 };
 
 /// Feeds the round again and again, with stamps that go on. A point is how things stood after so many frames:

@@ -12,7 +12,7 @@ void Options::check(FieldErrors& errors) const {
     errors.require(frames >= 0, "frames", frames, "at least 0");
 }
 
-void add_flags(Flags& flags, Options& options, const std::string& frames) {
+void add_flags(messages::Flags& flags, Options& options, const std::string& frames) {
     flags.add("sequences", options.sequences, "comma-separated names, see above");
     flags.add("frames", options.frames, frames);
     flags.add("data", options.data, "folder of the recordings; default: $PLANEMAP_DATA, or ../shared/data");
@@ -28,13 +28,13 @@ std::function<void(std::int64_t)> frame_counter(const std::string& what, bool qu
 }
 
 int run_program(const std::string& program, const std::string& description, int argc, char** argv,
-                const std::function<void(Flags&)>& add, const std::function<int()>& body) {
-    Flags flags(program, description);
+                const std::function<void(messages::Flags&)>& add, const std::function<int()>& body) {
+    messages::Flags flags(program, description);
     add(flags);
     const int parsed = flags.parse(argc, argv);
     if (parsed >= 0) return parsed;
-    start_logging(program, false);
-    return run_main(program, body);
+    messages::start_logging(program, false);
+    return messages::run_main(program, body);
 }
 
 }  // namespace planemap::benchmark

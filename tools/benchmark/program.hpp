@@ -24,7 +24,7 @@ struct Options {
 };
 
 /// Their flags; `frames` says which frames are taken.
-void add_flags(Flags& flags, Options& options, const std::string& frames);
+void add_flags(messages::Flags& flags, Options& options, const std::string& frames);
 
 /// Says on stderr how many frames of `what` there are so far; each copy goes on from the others.
 std::function<void(std::int64_t frames)> frame_counter(const std::string& what, bool quiet);
@@ -32,6 +32,6 @@ std::function<void(std::int64_t frames)> frame_counter(const std::string& what, 
 /// Parses the flags that `add` adds, and runs `body`. Returns the exit code: 1 for an error (one line on
 /// stderr), 2 for wrong flags.
 int run_program(const std::string& program, const std::string& description, int argc, char** argv,
-                const std::function<void(Flags&)>& add, const std::function<int()>& body);
+                const std::function<void(messages::Flags&)>& add, const std::function<int()>& body);
 
 }  // namespace planemap::benchmark

@@ -97,7 +97,8 @@ std::filesystem::path render(const SequenceInfo& sequence, const std::string& si
         results.make({name + ".lcmlog", [&](const auto& file) {
                           record(std::move(source), part ? frames : 0, file, on_frame);
                       }});
-        if (stop_requested()) throw std::runtime_error(log.string() + ": stopped before it was whole");
+        if (messages::stop_requested())
+            throw std::runtime_error(log.string() + ": stopped before it was whole");
         results.replace();
     } catch (...) {
         results.discard();

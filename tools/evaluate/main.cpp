@@ -29,7 +29,7 @@ const std::map<std::string, DeltaUnit> delta_units{{"s", DeltaUnit::seconds},
                                                    {"deg", DeltaUnit::degrees},
                                                    {"f", DeltaUnit::frames}};
 
-void add_flags(Flags& flags, Arguments& arguments) {
+void add_flags(messages::Flags& flags, Arguments& arguments) {
     flags.add_positional("TRUTH", arguments.truth_file,
                          "true trajectory: lines `timestamp tx ty tz qx qy qz qw` (TUM), EuRoC's csv, or "
                          "KITTI's 12 numbers a line; timestamps in s, ms, us or ns, known by their size");
@@ -205,7 +205,7 @@ void run(const Arguments& arguments) {
 int main(int argc, char** argv) {
     const std::string program = "planemap-evaluate";
     planemap::Arguments arguments;
-    planemap::Flags flags(
+    planemap::messages::Flags flags(
         program,
         "Compares a trajectory with the truth as the TUM RGB-D benchmark does: absolute "
         "trajectory error (ATE) after\n"
@@ -217,7 +217,7 @@ int main(int argc, char** argv) {
     planemap::add_flags(flags, arguments);
     const int parsed = flags.parse(argc, argv);
     if (parsed >= 0) return parsed;
-    return planemap::run_main(program, [&] {
+    return planemap::messages::run_main(program, [&] {
         planemap::run(arguments);
         return 0;
     });

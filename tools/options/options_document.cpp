@@ -65,13 +65,13 @@ std::string section(const std::string& lead) {
 }  // namespace
 
 std::string options_document() {
-    SensorShellOptions sensor;
+    sensor::SensorShellOptions sensor;
     simulator::SimulatorOptions simulator;
     return kIntroduction + section<segmentation::SegmentationOptions>("--segmentation-") +
-           section<odometry::OdometryOptions>("--odometry-") + section<GraphOptions>("--graph-") +
-           section<map::MapOptions>("--map-") + section<OctomapOptions>("--octomap-") +
-           section(pacing_of(sensor), "--", "Of `planemap-sensor`.") +
-           section(encoding_of(sensor), "--", "Of `planemap-sensor` and `planemap-simulate`.") +
+           section<odometry::OdometryOptions>("--odometry-") + section<graph::GraphOptions>("--graph-") +
+           section<map::MapOptions>("--map-") + section<octomap::OctomapOptions>("--octomap-") +
+           section(sensor::pacing_of(sensor), "--", "Of `planemap-sensor`.") +
+           section(sensor::encoding_of(sensor), "--", "Of `planemap-sensor` and `planemap-simulate`.") +
            section(options_of(simulator), "",
                    "Parameters of a name, as in `sim:office?frames=300&seed=7`; `planemap-simulate --help` "
                    "lists the worlds.");

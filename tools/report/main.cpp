@@ -9,17 +9,18 @@
 #include "run/report.hpp"
 
 int main(int argc, char** argv) {
-    planemap::Flags flags("planemap-report",
-                          "Prints the report of a run: what the plane map takes beside an OctoMap, clouds "
-                          "and voxels of the same run, and at\n"
-                          "what coverage. Reads report.json of planemap-run's output folder and writes "
-                          "report.md beside it anew.");
+    planemap::messages::Flags flags(
+        "planemap-report",
+        "Prints the report of a run: what the plane map takes beside an OctoMap, clouds "
+        "and voxels of the same run, and at\n"
+        "what coverage. Reads report.json of planemap-run's output folder and writes "
+        "report.md beside it anew.");
     std::string folder_name;
     flags.add_positional("folder", folder_name, "Output folder of planemap-run");
     const int parsed = flags.parse(argc, argv);
     if (parsed >= 0) return parsed;
     const std::filesystem::path folder = folder_name;
-    return planemap::run_main("planemap-report", [&] {
+    return planemap::messages::run_main("planemap-report", [&] {
         const nlohmann::ordered_json report = planemap::read_report(folder);
         std::string markdown;
         try {

@@ -58,8 +58,8 @@ bool is_part_of(const Trajectory& trajectory, const Trajectory& truth) {
            });
 }
 
-void add_accuracy(const Input& input, Pipeline& pipeline, Json& report) {
-    const GivenPoses* given = pipeline.given_poses();
+void add_accuracy(const Input& input, pipeline::Pipeline& pipeline, Json& report) {
+    const pipeline::GivenPoses* given = pipeline.given_poses();
     std::optional<Trajectory> truth;
     try {
         truth = input.truth();

@@ -8,7 +8,9 @@
 namespace planemap {
 
 class Input;
+namespace pipeline {
 class Pipeline;
+}
 
 /// True if every pose of a trajectory is one of the truth's, at the same time, but for the rounding of text
 /// files. Sorted input; false for an empty trajectory.
@@ -18,6 +20,6 @@ bool is_part_of(const Trajectory& trajectory, const Trajectory& truth);
 /// figures that the truth does not allow are null. "accuracy_note" says what to know about it, or why there
 /// is none: given poses (--poses) are not what was tracked, and if they are the truth itself, nothing is
 /// measured.
-void add_accuracy(const Input& input, Pipeline& pipeline, nlohmann::ordered_json& report);
+void add_accuracy(const Input& input, pipeline::Pipeline& pipeline, nlohmann::ordered_json& report);
 
 }  // namespace planemap

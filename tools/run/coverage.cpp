@@ -213,7 +213,8 @@ class Comparison {
             }
         }
         supported_samples_.clear();
-        touched_.for_each([&](const Voxel& v) { supported_samples_.emplace_back(8 * v.y + v.z, v.x); });
+        touched_.for_each(
+            [&](const octomap::Voxel& v) { supported_samples_.emplace_back(8 * v.y + v.z, v.x); });
         std::sort(supported_samples_.begin(), supported_samples_.end());
     }
 
@@ -235,7 +236,7 @@ class Comparison {
     std::size_t samples_ = 0, supported_ = 0;
     // Of the plane at hand.
     std::vector<std::size_t> near_;
-    VoxelSet touched_;                                    ///< column, row / 8, row % 8
+    octomap::VoxelSet touched_;                           ///< column, row / 8, row % 8
     std::vector<std::pair<int, int>> supported_samples_;  ///< row, column
     std::vector<double> crossings_;
     RowInside inside_;

@@ -26,8 +26,8 @@ namespace {
 /// them twice.
 class SensorInput : public Input {
   public:
-    SensorInput(const std::string& name, Bus& bus, const FrameRange& frames)
-        : folder_(name), shell_(bus, open_source(name, {.frames = frames}), in_process()) {
+    SensorInput(const std::string& name, messages::Bus& bus, const FrameRange& frames)
+        : folder_(name), shell_(bus, sensor::open_source(name, {.frames = frames}), in_process()) {
         read_truth();
     }
 
@@ -65,8 +65,8 @@ class SensorInput : public Input {
 
   private:
     bool publish_next() override { return shell_.poll() >= 0; }
-    static SensorShellOptions in_process() {
-        SensorShellOptions options;
+    static sensor::SensorShellOptions in_process() {
+        sensor::SensorShellOptions options;
         options.speed = 0;
         options.color = options.depth = "raw";
         return options;
@@ -86,29 +86,29 @@ class SensorInput : public Input {
     }
 
     std::filesystem::path folder_;
-    SensorShell shell_;
+    sensor::SensorShell shell_;
     std::optional<Trajectory> truth_;  ///< of a folder
 };
 
 template <typename T>
-bool is_a(const LogEvent& event) {
+bool is_a(const messages::LogEvent& event) {
     return fingerprint(event) == static_cast<std::uint64_t>(T::getHash());
 }
 
 /// Why a message of the type cannot be used; empty if it can.
 template <typename T>
-std::string why_unusable(const LogEvent& event) {
+std::string why_unusable(const messages::LogEvent& event) {
     try {
-        from_message(decode<T>(event.bytes));
+        messages::from_message(messages::decode<T>(event.bytes));
         return {};
-    } catch (const MessageError& error) {
+    } catch (const messages::MessageError& error) {
         return error.what();
     }
 }
 
-bool has_depth(const LogEvent& event) {
+bool has_depth(const messages::LogEvent& event) {
     try {
-        const auto types = decode<bot_core::images_t>(event.bytes).image_types;
+        const auto types = messages::decode<bot_core::images_t>(event.bytes).image_types;
         return std::any_of(types.begin(), types.end(), [](std::int16_t type) {
             return type == bot_core::images_t::DEPTH_MM || type == bot_core::images_t::DEPTH_MM_ZIPPED;
         });
@@ -121,14 +121,15 @@ bool has_depth(const LogEvent& event) {
 /// camera_info_t that can be used.
 class LogInput : public Input {
   public:
-    LogInput(const std::string& name, Bus& bus, bool has_camera, const FrameRange& range)
+    LogInput(const std::string& name, messages::Bus& bus, bool has_camera, const FrameRange& range)
         : name_(name), bus_(bus), log_(name), range_(range), follow_camera_(!has_camera) {
-        LogReader ahead(name);
+        messages::LogReader ahead(name);
         LogContents contents;
         bool described = false;
         std::int64_t unusable = 0;
         std::string reason;
-        for (LogEvent event; !((described || has_camera) && !channel_.empty()) && ahead.next(event);) {
+        for (messages::LogEvent event;
+             !((described || has_camera) && !channel_.empty()) && ahead.next(event);) {
             contents.add(event);
             if (channel_.empty() && is_a<bot_core::images_t>(event) && has_depth(event))
                 channel_ = event.channel;
@@ -136,7 +137,7 @@ class LogInput : public Input {
             const std::string why = why_unusable<camera_info_t>(event);
             if (why.empty()) {
                 described = true;
-                if (!has_camera) bus_.publish_bytes(channels::kCameraInfo, event.bytes);
+                if (!has_camera) bus_.publish_bytes(messages::channels::kCameraInfo, event.bytes);
             } else if (++unusable == 1) {
                 reason = why;
             }
@@ -175,17 +176,17 @@ class LogInput : public Input {
   private:
     bool publish_next() override {
         try {
-            for (LogEvent event; log_.next(event);) {
+            for (messages::LogEvent event; log_.next(event);) {
                 if (event.channel == channel_) {
                     const std::size_t number = next_++;
                     if (number < range_.from) continue;
                     if (range_.to && number >= *range_.to) return false;
-                    bus_.publish_bytes(channels::kFrame, event.bytes);
+                    bus_.publish_bytes(messages::channels::kFrame, event.bytes);
                     ++frames_;
                     return true;
                 }
-                if (follow_camera_ && event.channel == channels::kCameraInfo)
-                    bus_.publish_bytes(channels::kCameraInfo, event.bytes);
+                if (follow_camera_ && event.channel == messages::channels::kCameraInfo)
+                    bus_.publish_bytes(messages::channels::kCameraInfo, event.bytes);
                 if (is_a<bot_core::images_t>(event)) unread_.add(event);
             }
         } catch (const std::runtime_error& error) {  // a disk that fails: what there is so far is kept
@@ -205,15 +206,16 @@ class LogInput : public Input {
 
     /// An error now rather than at the end of the log.
     void check_range() const {
-        LogReader ahead(name_);
+        messages::LogReader ahead(name_);
         std::size_t count = 0;
-        for (LogEvent event; count <= range_.from && ahead.next(event);) count += event.channel == channel_;
+        for (messages::LogEvent event; count <= range_.from && ahead.next(event);)
+            count += event.channel == channel_;
         frames_within(range_, count);
     }
 
     std::string name_;
-    Bus& bus_;
-    LogReader log_;
+    messages::Bus& bus_;
+    messages::LogReader log_;
     FrameRange range_;
     std::size_t next_ = 0;  ///< number of the next frame in the log
     LogContents unread_;    ///< images_t of other channels
@@ -240,8 +242,8 @@ void feed_all(Input& input, std::int64_t max_frames,
     while ((max_frames == 0 || input.frames() < max_frames) && input.feed()) after_each(input.frames());
 }
 
-std::unique_ptr<Input> open_input(const std::string& name, Bus& bus, const std::optional<CameraInfo>& camera,
-                                  const FrameRange& frames) {
+std::unique_ptr<Input> open_input(const std::string& name, messages::Bus& bus,
+                                  const std::optional<CameraInfo>& camera, const FrameRange& frames) {
     std::error_code ignored;
     if (std::filesystem::is_regular_file(name, ignored))
         return std::make_unique<LogInput>(name, bus, camera.has_value(), frames);

@@ -53,8 +53,8 @@ class Input {
 /// Opens a TUM-layout folder, an LCM log or a simulator name (sim:...). `camera` is for logs that do not
 /// describe theirs; of the frames only those of `frames` are read. Throws std::runtime_error or
 /// std::invalid_argument with one line that names input and reason.
-std::unique_ptr<Input> open_input(const std::string& name, Bus& bus, const std::optional<CameraInfo>& camera,
-                                  const FrameRange& frames = {});
+std::unique_ptr<Input> open_input(const std::string& name, messages::Bus& bus,
+                                  const std::optional<CameraInfo>& camera, const FrameRange& frames = {});
 
 /// Feeds an input to its end, or until it gave `max_frames` (0: all). Calls `after_each` with the frames so
 /// far.

@@ -20,10 +20,10 @@ constexpr int kTimesTheCost = 50;
 
 InterimResults::InterimResults(ResultFolder& folder) : folder_(folder), due_(Clock::now() + kPeriod) {}
 
-void InterimResults::write_if_due(Pipeline& pipeline) {
+void InterimResults::write_if_due(pipeline::Pipeline& pipeline) {
     const Clock::time_point start = Clock::now();
     if (start < due_ || tracked_frames(pipeline) == 0) return;
-    const double cpu_start = thread_cpu_ms();
+    const double cpu_start = messages::thread_cpu_ms();
     try {
         for (const Result& result : essential_results(pipeline)) folder_.make(result);
         ++times_;
@@ -33,7 +33,7 @@ void InterimResults::write_if_due(Pipeline& pipeline) {
     }
     for (const std::string& note : folder_.take_notes()) spdlog::warn("{}", note);
     const Clock::duration cost = Clock::now() - start;
-    cpu_ms_ += thread_cpu_ms() - cpu_start;
+    cpu_ms_ += messages::thread_cpu_ms() - cpu_start;
     wall_ms_ += std::chrono::duration<double, std::milli>(cost).count();
     due_ = Clock::now() + std::max<Clock::duration>(kPeriod, kTimesTheCost * cost);
 }

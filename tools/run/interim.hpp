@@ -7,7 +7,9 @@
 
 namespace planemap {
 
+namespace pipeline {
 class Pipeline;
+}
 
 /// Writes what is mapped so far to the workspace of the results' folder every few seconds, so that a run that
 /// is killed leaves it there. Reads only: the results at the end do not depend on it.
@@ -17,7 +19,7 @@ class InterimResults {
 
     /// Waits three seconds from one time to the next, and fifty times as long as writing took: at most 2 % of
     /// the run, however long that is. A failure is logged once, and tried again.
-    void write_if_due(Pipeline& pipeline);
+    void write_if_due(pipeline::Pipeline& pipeline);
 
     int times() const { return times_; }         ///< written
     double cpu_ms() const { return cpu_ms_; }    ///< CPU time of all of them

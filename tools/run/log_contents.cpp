@@ -55,13 +55,13 @@ std::string printable(std::string name) {
 
 }  // namespace
 
-std::uint64_t fingerprint(const LogEvent& event) {
+std::uint64_t fingerprint(const messages::LogEvent& event) {
     std::uint64_t value = 0;
     for (std::size_t i = 0; i < 8 && event.bytes.size() >= 8; ++i) value = value << 8 | event.bytes[i];
     return value;
 }
 
-void LogContents::add(const LogEvent& event) {
+void LogContents::add(const messages::LogEvent& event) {
     ++count_;
     const std::pair key(event.channel, fingerprint(event));
     if (messages_.size() < kMaxRows || messages_.count(key) > 0) {

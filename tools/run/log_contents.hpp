@@ -11,14 +11,14 @@
 namespace planemap {
 
 /// The fingerprint that a message begins with; 0 for one that is too short to have one.
-std::uint64_t fingerprint(const LogEvent& event);
+std::uint64_t fingerprint(const messages::LogEvent& event);
 
 /// Which channels a log has, and what is on them: for the error that nothing of it can be used.
 class LogContents {
   public:
     static constexpr std::size_t kMaxRows = 32;  ///< pairs of channel and type; the rest is counted
 
-    void add(const LogEvent& event);
+    void add(const messages::LogEvent& event);
     std::int64_t count() const { return count_; }  ///< messages of all channels
     /// "OPENNI_FRAME bot_core.images_t (40), POSE 0x0123456789abcdef (3)"; types that are not known as their
     /// fingerprint. "nothing" for an empty log.

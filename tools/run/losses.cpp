@@ -13,9 +13,9 @@ namespace planemap {
 namespace {
 using Json = nlohmann::ordered_json;
 
-std::vector<const ModuleStatus*> statuses_of(Pipeline& pipeline) {
-    std::vector<const ModuleStatus*> statuses{&pipeline.segmentation().status(),
-                                              &pipeline.odometry().status()};
+std::vector<const messages::ModuleStatus*> statuses_of(pipeline::Pipeline& pipeline) {
+    std::vector<const messages::ModuleStatus*> statuses{&pipeline.segmentation().status(),
+                                                        &pipeline.odometry().status()};
     if (pipeline.graph() != nullptr) statuses.push_back(&pipeline.graph()->status());
     statuses.push_back(&pipeline.map().status());
     if (pipeline.octomap() != nullptr) statuses.push_back(&pipeline.octomap()->status());
@@ -24,18 +24,18 @@ std::vector<const ModuleStatus*> statuses_of(Pipeline& pipeline) {
 
 }  // namespace
 
-std::vector<std::string> remarks_of(Pipeline& pipeline) {
+std::vector<std::string> remarks_of(pipeline::Pipeline& pipeline) {
     std::vector<std::string> remarks;
-    for (const ModuleStatus* status : statuses_of(pipeline)) {
+    for (const messages::ModuleStatus* status : statuses_of(pipeline)) {
         for (const std::string& remark : status->remarks())
             if (std::find(remarks.begin(), remarks.end(), remark) == remarks.end()) remarks.push_back(remark);
     }
     return remarks;
 }
 
-Json losses_of(Pipeline& pipeline) {
+Json losses_of(pipeline::Pipeline& pipeline) {
     Json losses = Json::object();
-    for (const ModuleStatus* status : statuses_of(pipeline)) {
+    for (const messages::ModuleStatus* status : statuses_of(pipeline)) {
         Json module = Json::object();
         for (const auto& [what, count] : status->losses()) module[what] = count;
         if (status->decode_error_count() > 0)

@@ -23,10 +23,10 @@ struct RunOptions {
     std::filesystem::path output, camera, poses;
     bool no_octomap = false, quiet = false, verbose = false;
     std::optional<std::uint64_t> seed;
-    PipelineOptions pipeline;
+    pipeline::PipelineOptions pipeline;
 };
 
-void add_run_flags(Flags& flags, RunOptions& options) {
+void add_run_flags(messages::Flags& flags, RunOptions& options) {
     flags.add_positional(
         "input", options.input,
         "TUM-layout folder (rgb.txt, depth.txt, camera.json), LCM log, or sim:office[?frames=N&seed=N...]");
@@ -56,12 +56,12 @@ void add_run_flags(Flags& flags, RunOptions& options) {
 
 /// Feeds the input to its end, or until a signal asks to stop. Returns the error that ended it early, if one
 /// did: what was mapped until then is not lost.
-std::string map(const RunOptions& options, Input& input, Pipeline& pipeline, ResultFolder& folder) {
+std::string map(const RunOptions& options, Input& input, pipeline::Pipeline& pipeline, ResultFolder& folder) {
     std::string error;
     Progress progress(options.quiet);
     InterimResults interim(folder);
     try {
-        while (!stop_requested() && input.feed()) {
+        while (!messages::stop_requested() && input.feed()) {
             pipeline.settle();
             progress.show(input, pipeline);
             interim.write_if_due(pipeline);
@@ -70,7 +70,7 @@ std::string map(const RunOptions& options, Input& input, Pipeline& pipeline, Res
         error = failure.what();
     }
     progress.end();
-    if (stop_requested()) {
+    if (messages::stop_requested()) {
         spdlog::warn("stopped after {} frames: writing what was mapped so far (another Ctrl-C ends at once)",
                      input.frames());
     }
@@ -81,17 +81,18 @@ std::string map(const RunOptions& options, Input& input, Pipeline& pipeline, Res
 }
 
 /// What is wrong with the results, a line each; the last says what became of them.
-std::vector<std::string> problems_of(const RunOptions& options, const Input& input, Pipeline& pipeline,
-                                     const ResultFolder& folder, const Outputs& outputs) {
+std::vector<std::string> problems_of(const RunOptions& options, const Input& input,
+                                     pipeline::Pipeline& pipeline, const ResultFolder& folder,
+                                     const Outputs& outputs) {
     const std::string& input_name = options.input;
-    const GivenPoses* given = pipeline.given_poses();
+    const pipeline::GivenPoses* given = pipeline.given_poses();
     std::vector<std::string> lines = outputs.failures;
     const std::string earlier =
         outputs.kept_earlier ? "; " + folder.path().string() + " keeps the results of an earlier run" : "";
     const std::string aside = outputs.folder.empty() || outputs.folder == folder.path()
                                   ? ""
                                   : earlier + ", the new ones are in " + outputs.folder.string();
-    if (pipeline.estimates().empty() && stop_requested()) {
+    if (pipeline.estimates().empty() && messages::stop_requested()) {
         lines.push_back("stopped before the first frame of " + input_name + " was mapped" + earlier);
     } else if (pipeline.estimates().empty()) {
         lines.push_back(input_name + ": no frame of it could be used" + earlier);
@@ -142,15 +143,15 @@ int run(RunOptions options, const nlohmann::ordered_json& about) {
     options.pipeline.with_octomap = !options.no_octomap;
     if (!options.camera.empty()) {
         std::vector<std::string> notes;
-        options.pipeline.camera = read_camera_file(options.camera, &notes);
+        options.pipeline.camera = sensor::read_camera_file(options.camera, &notes);
         warn(notes);
     }
     if (!options.poses.empty()) options.pipeline.poses = read_given_poses(options.poses);
     const FrameRange frames = options.frames.empty() ? FrameRange{} : parse_frame_range(options.frames);
-    catch_stop_signals();
+    messages::catch_stop_signals();
 
-    Bus bus("memq://");
-    Pipeline pipeline(bus, options.pipeline);
+    messages::Bus bus("memq://");
+    pipeline::Pipeline pipeline(bus, options.pipeline);
     const std::unique_ptr<Input> input = open_input(options.input, bus, options.pipeline.camera, frames);
     ResultFolder folder(options.output, result_names(options.output, *input));
     warn(folder.take_notes());
@@ -158,7 +159,7 @@ int run(RunOptions options, const nlohmann::ordered_json& about) {
     RunClock clock;
     const std::string error = map(options, *input, pipeline, folder);
     clock.stop();
-    if (const GivenPoses* given = pipeline.given_poses();
+    if (const pipeline::GivenPoses* given = pipeline.given_poses();
         given != nullptr && given->missing() > 0 && !given->fit_nothing()) {
         spdlog::warn("{}: no pose within 0.1 s of {} keyframes, which are not in the map",
                      options.poses.string(), given->missing());
@@ -185,7 +186,7 @@ int run(RunOptions options, const nlohmann::ordered_json& about) {
 }  // namespace planemap
 
 int main(int argc, char** argv) {
-    planemap::Flags flags(
+    planemap::messages::Flags flags(
         "planemap-run",
         "A recording to a plane map: runs all modules in one process, as fast as the machine allows, and "
         "writes the\n"
@@ -197,6 +198,6 @@ int main(int argc, char** argv) {
     const int parsed = flags.parse(argc, argv);
     if (parsed >= 0) return parsed;
     const nlohmann::ordered_json about = planemap::run_info(flags);
-    planemap::start_logging("planemap-run", options.verbose);
-    return planemap::run_main("planemap-run", [&] { return planemap::run(options, about); });
+    planemap::messages::start_logging("planemap-run", options.verbose);
+    return planemap::messages::run_main("planemap-run", [&] { return planemap::run(options, about); });
 }

@@ -43,7 +43,7 @@ Json stage(const Histogram& ms) {
     return {{"median", ms.median()}, {"p95", ms.p95()}, {"count", ms.count()}, {"total_s", ms.sum() / 1000}};
 }
 
-Json stages(const Input& input, Pipeline& pipeline) {
+Json stages(const Input& input, pipeline::Pipeline& pipeline) {
     return {
         {"input", stage(input.read_ms())},
         {"decode", stage(pipeline.decoder().decode_ms())},
@@ -64,13 +64,13 @@ void RunClock::stop() {
     cpu_s_ = cpu_seconds() - cpu_start_;
 }
 
-std::int64_t tracked_frames(const Pipeline& pipeline) {
+std::int64_t tracked_frames(const pipeline::Pipeline& pipeline) {
     const auto& estimates = pipeline.estimates();
     return std::count_if(estimates.begin(), estimates.end(),
                          [](const auto& e) { return e.status != TrackingStatus::kLost; });
 }
 
-std::vector<Result> essential_results(Pipeline& pipeline) {
+std::vector<Result> essential_results(pipeline::Pipeline& pipeline) {
     const map::PlaneMapper& mapper = pipeline.map().mapper();
     return {
         {"plane_map.lcmlog", [&mapper](const auto& file) { map::write_plane_map(file, mapper.map()); }},
@@ -82,8 +82,8 @@ std::vector<Result> essential_results(Pipeline& pipeline) {
 
 namespace {
 
-Json report_of(const std::string& input_name, const Input& input, Pipeline& pipeline, const RunClock& clock,
-               const Json& about) {
+Json report_of(const std::string& input_name, const Input& input, pipeline::Pipeline& pipeline,
+               const RunClock& clock, const Json& about) {
     const PlaneMap& map = pipeline.map().mapper().map();
     const auto& estimates = pipeline.estimates();
     const std::int64_t tracked = tracked_frames(pipeline);
@@ -121,7 +121,7 @@ Json report_of(const std::string& input_name, const Input& input, Pipeline& pipe
 }
 
 /// What can be had from the essential results, or is less than them: the small first, the largest last.
-std::vector<Result> further_results(const Input& input, Pipeline& pipeline, const Json& report) {
+std::vector<Result> further_results(const Input& input, pipeline::Pipeline& pipeline, const Json& report) {
     const PlaneMap& map = pipeline.map().mapper().map();
     std::vector<Result> results;
     const auto add = [&](const char* name, std::function<std::string()> bytes) {
@@ -147,7 +147,8 @@ std::vector<Result> further_results(const Input& input, Pipeline& pipeline, cons
 }
 
 /// Why the results must not take the place of the earlier ones in the folder; empty if they may.
-std::string why_poorer(const std::filesystem::path& folder, const Input& input, Pipeline& pipeline) {
+std::string why_poorer(const std::filesystem::path& folder, const Input& input,
+                       pipeline::Pipeline& pipeline) {
     const RunWorth run{input.frames(), tracked_frames(pipeline), !input.is_at_end()};
     const std::string why = why_not_replace(run, worth_in(folder));
     if (!why.empty() || !pipeline.map().mapper().map().planes.empty()) return why;
@@ -186,7 +187,7 @@ std::vector<std::string> result_names(const std::filesystem::path& folder, const
 }
 
 Outputs write_outputs(ResultFolder& folder, const std::string& input_name, const Input& input,
-                      Pipeline& pipeline, const RunClock& clock, const Json& about) {
+                      pipeline::Pipeline& pipeline, const RunClock& clock, const Json& about) {
     Outputs outputs;
     const auto attempt = [&](const std::function<void()>& action) {
         try {

@@ -12,7 +12,9 @@
 namespace planemap {
 
 class Input;
+namespace pipeline {
 class Pipeline;
+}
 
 /// Wall clock and CPU time of the run.
 class RunClock {
@@ -28,10 +30,10 @@ class RunClock {
 };
 
 /// Frames whose pose is known.
-std::int64_t tracked_frames(const Pipeline& pipeline);
+std::int64_t tracked_frames(const pipeline::Pipeline& pipeline);
 
 /// What nobody wants to lose, small: plane_map.lcmlog, trajectory.txt, planes.json.
-std::vector<Result> essential_results(Pipeline& pipeline);
+std::vector<Result> essential_results(pipeline::Pipeline& pipeline);
 
 /// The names in the folder that are planemap-run's own, to be replaced or removed. The truth's files have
 /// names that recordings use, too: they are ours only if the earlier run there was on the simulator. Throws
@@ -54,6 +56,7 @@ struct Outputs {
 /// better one (why_not_replace()). Else they are set aside in a folder of their own, or, if
 /// no frame was tracked, dropped. Without an earlier run they are put in place, whole or not.
 Outputs write_outputs(ResultFolder& folder, const std::string& input_name, const Input& input,
-                      Pipeline& pipeline, const RunClock& clock, const nlohmann::ordered_json& about);
+                      pipeline::Pipeline& pipeline, const RunClock& clock,
+                      const nlohmann::ordered_json& about);
 
 }  // namespace planemap

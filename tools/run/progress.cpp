@@ -33,10 +33,10 @@ std::string time_left(std::optional<double> share, double elapsed_s) {
 }  // namespace
 
 Progress::Progress(bool quiet) : line_(quiet), start_(std::chrono::steady_clock::now()), last_(start_) {
-    if (line_.is_drawn_in_place()) log_over_a_drawn_line(true);
+    if (line_.is_drawn_in_place()) messages::log_over_a_drawn_line(true);
 }
 
-void Progress::show(const Input& input, Pipeline& pipeline) {
+void Progress::show(const Input& input, pipeline::Pipeline& pipeline) {
     if (!line_.is_due()) return;
     const auto now = std::chrono::steady_clock::now();
     const double since = std::chrono::duration<double>(now - last_).count();
@@ -58,7 +58,7 @@ void Progress::show(const Input& input, Pipeline& pipeline) {
 
 void Progress::end() {
     line_.end();
-    log_over_a_drawn_line(false);
+    messages::log_over_a_drawn_line(false);
 }
 
 }  // namespace planemap

@@ -9,14 +9,16 @@
 namespace planemap {
 
 class Input;
+namespace pipeline {
 class Pipeline;
+}
 
 /// A line on stderr while the work goes on: frame, rate, time left, planes, tracking state. On a terminal it
 /// is redrawn in place; elsewhere one line every few seconds.
 class Progress {
   public:
     explicit Progress(bool quiet);
-    void show(const Input& input, Pipeline& pipeline);
+    void show(const Input& input, pipeline::Pipeline& pipeline);
     /// Ends the line that is redrawn.
     void end();
 

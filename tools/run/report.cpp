@@ -121,7 +121,7 @@ Json read_report(const std::filesystem::path& folder) {
     std::error_code ignored;
     if (!std::filesystem::exists(file, ignored))
         throw std::runtime_error(file.string() + ": " + why_no_report(folder));
-    read_json_object(file);  // says where it is wrong, but keeps no order
+    sensor::read_json_object(file);  // says where it is wrong, but keeps no order
     return Json::parse(read_file(file));
 }
 

@@ -25,9 +25,9 @@ std::string utc_now() {
 
 }  // namespace
 
-Json run_info(const Flags& flags) {
+Json run_info(const messages::Flags& flags) {
     Json options = Json::object();
-    for (const FlagValue& flag : flags.values()) {
+    for (const messages::FlagValue& flag : flags.values()) {
         options[flag.name] = std::visit(
             [](const auto& value) -> Json {
                 if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::monostate>) {

@@ -32,8 +32,8 @@ std::size_t zstd_bytes(std::string_view bytes) {
     return size;
 }
 
-void add_octomap(const OctomapBuilder& builder, const PlaneMap& map, Json& sizes, Json& report) {
-    const OctomapSizes s = builder.sizes();
+void add_octomap(const octomap::OctomapBuilder& builder, const PlaneMap& map, Json& sizes, Json& report) {
+    const octomap::OctomapSizes s = builder.sizes();
     sizes["octomap_memory"] = s.memory_bytes;
     sizes["octomap_bt"] = s.bt_bytes;
     sizes["octomap_ot"] = s.ot_bytes;
@@ -156,9 +156,9 @@ std::string format(const char* pattern, double value) {
     return text;
 }
 
-void add_sizes(Pipeline& pipeline, std::int64_t frames, Json& report) {
+void add_sizes(pipeline::Pipeline& pipeline, std::int64_t frames, Json& report) {
     const map::PlaneMapper& mapper = pipeline.map().mapper();
-    const plane_map_t message = to_message(mapper.map(), 0);
+    const plane_map_t message = messages::to_message(mapper.map(), 0);
     std::string bytes(static_cast<std::size_t>(message.getEncodedSize()), '\0');
     message.encode(bytes.data(), 0, message.getEncodedSize());
     const CameraInfo* camera = pipeline.decoder().camera();

@@ -9,10 +9,12 @@
 
 namespace planemap {
 
+namespace pipeline {
 class Pipeline;
+}
 
 /// Adds "sizes_bytes", "octomap" and "coverage"; what there is no OctoMap for is null.
-void add_sizes(Pipeline& pipeline, std::int64_t frames, nlohmann::ordered_json& report);
+void add_sizes(pipeline::Pipeline& pipeline, std::int64_t frames, nlohmann::ordered_json& report);
 
 /// The report's section on sizes. A saving is never printed without its coverage, nor an OctoMap's size
 /// without its resolution; what was not measured is said not to be. Throws nlohmann::json::exception for a

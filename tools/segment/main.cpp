@@ -24,7 +24,7 @@ constexpr const char* kDescription =
 
 int run(const SegmentImagesOptions& options, const std::filesystem::path& camera_file) {
     std::vector<std::string> notes;
-    const CameraInfo camera = read_camera_file(camera_file, &notes);
+    const CameraInfo camera = sensor::read_camera_file(camera_file, &notes);
     for (const std::string& note : notes) std::fprintf(stderr, "%s: %s\n", kProgram, note.c_str());
     const SegmentImagesReport report = segment_images(options, camera);
     for (const std::string& note : report.notes) std::fprintf(stderr, "%s: %s\n", kProgram, note.c_str());
@@ -44,7 +44,7 @@ int main(int argc, char** argv) {
     SegmentImagesOptions options;
     std::filesystem::path camera;
     std::string first;
-    Flags flags(kProgram, kDescription);
+    messages::Flags flags(kProgram, kDescription);
     flags.add_positional("DEPTH.png...", first, "16-bit greyscale PNG, in the units of camera.json");
     flags.add("camera", camera, "camera.json of the sensor");
     flags.required();
@@ -70,5 +70,5 @@ int main(int argc, char** argv) {
     }
     const int parsed = flags.parse(static_cast<int>(known.size()), known.data());
     if (parsed >= 0) return parsed;
-    return run_main(kProgram, [&] { return run(options, camera); });
+    return messages::run_main(kProgram, [&] { return run(options, camera); });
 }

@@ -26,9 +26,9 @@ nlohmann::ordered_json measure(segmentation::Segmenter& segmenter, const DepthIm
     segmentation::Segmentation unused;
     segmenter.segment(depth, camera, unused);
     for (int i = 0; i < repeat; ++i) {
-        const double start = thread_cpu_ms();
+        const double start = messages::thread_cpu_ms();
         segmenter.segment(depth, camera, unused);
-        ms.push_back(thread_cpu_ms() - start);
+        ms.push_back(messages::thread_cpu_ms() - start);
     }
     return {{"median", nearest_rank(ms, 0.5)}, {"p95", nearest_rank(ms, 0.95)}, {"repeats", repeat}};
 }
@@ -36,7 +36,7 @@ nlohmann::ordered_json measure(segmentation::Segmenter& segmenter, const DepthIm
 /// Images that are cut short behind their last pixel, in one line; empty for none.
 std::string ends_missing_text(const std::vector<std::filesystem::path>& images) {
     if (images.empty()) return {};
-    std::string text = images.front().string() + ": " + kEndMissing;
+    std::string text = images.front().string() + ": " + sensor::kEndMissing;
     if (images.size() > 1) text += "; and " + std::to_string(images.size() - 1) + " more such images";
     return text;
 }
@@ -114,19 +114,18 @@ SegmentImagesReport segment_images(const SegmentImagesOptions& options, const Ca
         const ResultNames names(image);
         refuse_to_overwrite(options.output, names, options.images);
         bool end_missing = false;
-        const DepthImage depth = read_image(image, camera, [&](const auto& bytes, int width, int height) {
-            return decode_depth_png(bytes, width, height, &end_missing);
-        });
+        const DepthImage depth = read_image(image, camera, sensor::decode_depth_png, &end_missing);
         if (end_missing) cut.push_back(image);
         segmenter->segment(depth, camera, segmentation);
         nlohmann::ordered_json json{{"image", image.string()}, {"width", depth.width},
                                     {"height", depth.height},  {"method", options.segmentation.method},
                                     {"labels", names.labels},  {"regions", regions_json(segmentation)}};
         if (options.repeat > 0) json["time_ms"] = measure(*segmenter, depth, camera, options.repeat);
-        folder.make({names.labels, [&](const auto& file) { write_depth_png(file, segmentation.labels); }});
+        folder.make(
+            {names.labels, [&](const auto& file) { sensor::write_depth_png(file, segmentation.labels); }});
         if (options.overlay) {
             folder.make({names.overlay, [&](const auto& file) {
-                             write_color_png(file, draw_overlay(depth, camera, segmentation));
+                             sensor::write_color_png(file, draw_overlay(depth, camera, segmentation));
                          }});
         }
         folder.make({names.json, [&](const auto& file) { write_file(file, json.dump(1) + "\n"); }});

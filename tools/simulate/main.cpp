@@ -68,16 +68,16 @@ struct Simulated {
 };
 
 /// Makes log and truth in the folder's workspace, the truth first: it is there at once.
-Simulated make_results(const std::string& world, const SensorShellOptions& options, const std::string& log,
-                       ResultFolder& results) {
+Simulated make_results(const std::string& world, const sensor::SensorShellOptions& options,
+                       const std::string& log, ResultFolder& results) {
     auto source = std::make_unique<simulator::SimulatedSource>(simulator::parse_simulator_name(world));
     Simulated simulated;
     simulated.total = source->size().value_or(0);
     results.make({kTruth, [&](const auto& file) { write_trajectory(file, source->ground_truth()); }});
     results.make(
         {kPlanes, [&](const auto& file) { simulator::write_planes_truth(file, source->world(), log); }});
-    Bus bus("memq://");
-    SensorShell sensor(bus, std::move(source), options);
+    messages::Bus bus("memq://");
+    sensor::SensorShell sensor(bus, std::move(source), options);
     const auto show = [&](std::int64_t frames) {
         if (frames % 100 != 0) return;
         std::fprintf(stderr, "planemap-simulate: frame %lld of %zu\n", static_cast<long long>(frames),
@@ -90,8 +90,8 @@ Simulated make_results(const std::string& world, const SensorShellOptions& optio
 }
 
 int simulate(const std::string& world, const std::filesystem::path& output,
-             const SensorShellOptions& options) {
-    catch_stop_signals();
+             const sensor::SensorShellOptions& options) {
+    messages::catch_stop_signals();
     simulator::parse_simulator_name(world);  // a wrong name is seen before anything is touched
     const std::string log = log_name(output);
     const std::filesystem::path folder = output.parent_path().empty() ? "." : output.parent_path();
@@ -109,7 +109,8 @@ int simulate(const std::string& world, const std::filesystem::path& output,
         throw;
     }
     for (const std::string& note : results.take_notes()) spdlog::warn("{}", note);
-    if (stop_requested()) spdlog::warn("stopped after {} of {} frames", simulated.frames, simulated.total);
+    if (messages::stop_requested())
+        spdlog::warn("stopped after {} of {} frames", simulated.frames, simulated.total);
     char text[64];
     std::snprintf(text, sizeof(text), "%lld frames, %.1f MB", static_cast<long long>(simulated.frames),
                   static_cast<double>(simulated.bytes) / 1e6);
@@ -122,23 +123,24 @@ int simulate(const std::string& world, const std::filesystem::path& output,
 }  // namespace planemap
 
 int main(int argc, char** argv) {
-    planemap::Flags flags("planemap-simulate",
-                          "The simulator to an LCM log (OPENNI_FRAME with JPEG and zipped depth, "
-                          "PLANEMAP_CAMERA_INFO), with the exact poses\n"
-                          "(groundtruth.txt, TUM format) and planes (planes_truth.json) beside it.\n"
-                          "Example: planemap-simulate --output office/office.lcmlog\n" +
-                              planemap::simulator::simulator_help());
+    planemap::messages::Flags flags(
+        "planemap-simulate",
+        "The simulator to an LCM log (OPENNI_FRAME with JPEG and zipped depth, "
+        "PLANEMAP_CAMERA_INFO), with the exact poses\n"
+        "(groundtruth.txt, TUM format) and planes (planes_truth.json) beside it.\n"
+        "Example: planemap-simulate --output office/office.lcmlog\n" +
+            planemap::simulator::simulator_help());
     std::string world = "sim:office";
     std::filesystem::path output;
-    planemap::SensorShellOptions options;
+    planemap::sensor::SensorShellOptions options;
     flags.add_positional("world", world, "Simulator name, see above; default: sim:office", false);
     flags.add("o,output", output, "The log to write");
     flags.required();
-    flags.add(encoding_of(options));
+    flags.add(sensor::encoding_of(options));
     const int parsed = flags.parse(argc, argv);
     if (parsed >= 0) return parsed;
     options.speed = 0;  // as fast as it can be written
-    planemap::start_logging("planemap-simulate", false);
-    return planemap::run_main("planemap-simulate",
-                              [&] { return planemap::simulate(world, output, options); });
+    planemap::messages::start_logging("planemap-simulate", false);
+    return planemap::messages::run_main("planemap-simulate",
+                                        [&] { return planemap::simulate(world, output, options); });
 }

@@ -13,9 +13,9 @@ namespace {
 /// count it as one bad message.
 class Recorder {
   public:
-    Recorder(const SensorShell& sensor, Bus& bus, const std::filesystem::path& log)
+    Recorder(const sensor::SensorShell& sensor, messages::Bus& bus, const std::filesystem::path& log)
         : sensor_(sensor), writer_(log) {
-        bus.subscribe(".*", [this](const RawMessage& message) { write(message); });
+        bus.subscribe(".*", [this](const messages::RawMessage& message) { write(message); });
     }
     std::int64_t bytes() const { return bytes_; }
     void throw_if_failed() const {
@@ -24,7 +24,7 @@ class Recorder {
     void close() { writer_.close(); }
 
   private:
-    void write(const RawMessage& message) {
+    void write(const messages::RawMessage& message) {
         if (error_) return;
         try {
             writer_.write({events_++,
@@ -37,19 +37,21 @@ class Recorder {
         }
     }
 
-    const SensorShell& sensor_;
-    LogWriter writer_;
+    const sensor::SensorShell& sensor_;
+    messages::LogWriter writer_;
     std::int64_t events_ = 0, bytes_ = 0;
     std::exception_ptr error_;
 };
 
 }  // namespace
 
-std::int64_t record(SensorShell& sensor, Bus& bus, std::int64_t max_frames, const std::filesystem::path& log,
+std::int64_t record(sensor::SensorShell& sensor, messages::Bus& bus, std::int64_t max_frames,
+                    const std::filesystem::path& log,
                     const std::function<void(std::int64_t frames)>& on_frame) {
     Recorder recorder(sensor, bus, log);
     try {
-        while (!stop_requested() && (max_frames == 0 || sensor.frames() < max_frames) && sensor.poll() >= 0) {
+        while (!messages::stop_requested() && (max_frames == 0 || sensor.frames() < max_frames) &&
+               sensor.poll() >= 0) {
             bus.drain();
             recorder.throw_if_failed();
             on_frame(sensor.frames());
@@ -66,10 +68,10 @@ std::int64_t record(SensorShell& sensor, Bus& bus, std::int64_t max_frames, cons
 std::int64_t record(std::unique_ptr<FrameSource> source, std::int64_t max_frames,
                     const std::filesystem::path& log,
                     const std::function<void(std::int64_t frames)>& on_frame) {
-    Bus bus("memq://");
-    SensorShellOptions options;
+    messages::Bus bus("memq://");
+    sensor::SensorShellOptions options;
     options.speed = 0;
-    SensorShell sensor(bus, std::move(source), options);
+    sensor::SensorShell sensor(bus, std::move(source), options);
     return record(sensor, bus, max_frames, log, on_frame);
 }
 

@@ -15,7 +15,8 @@ namespace planemap {
 /// stop_requested(). Returns the bytes of the messages. Throws std::runtime_error naming the file when it
 /// cannot be written; what was written until then is removed. Who must not see half a log gives a name of a
 /// workspace, and renames.
-std::int64_t record(SensorShell& sensor, Bus& bus, std::int64_t max_frames, const std::filesystem::path& log,
+std::int64_t record(sensor::SensorShell& sensor, messages::Bus& bus, std::int64_t max_frames,
+                    const std::filesystem::path& log,
                     const std::function<void(std::int64_t frames)>& on_frame);
 
 /// The same of a source, as fast as it can be written.
