@@ -21,8 +21,8 @@ namespace planemap::graph {
 
 namespace {
 
-using graph::Drift;
-using graph::KeyframeNode;
+using Drift;
+using KeyframeNode;
 
 GraphOptions valid(const GraphOptions& options) {
     options.validate();
@@ -39,12 +39,12 @@ class PoseGraph::Impl {
 
     void extend(const Keyframe& keyframe);
     void optimise();
-    std::unique_ptr<graph::OptimisationTask> prepare();
-    void apply(const graph::OptimisationTask& task);
+    std::unique_ptr<OptimisationTask> prepare();
+    void apply(const OptimisationTask& task);
     void thin_out();
     void publish() { trajectory_.update(keyframes_, history_.count()); }
 
-    bool expects(int id) const { return keyframes_.empty() || graph::follows(id, keyframes_.back().id); }
+    bool expects(int id) const { return keyframes_.empty() || follows(id, keyframes_.back().id); }
     bool is_due() const { return schedule_.is_due(); }
     bool has_edges() const { return keyframes_.size() > 1; }
     const KeyframeTrajectory& trajectory() const { return trajectory_.get(); }
@@ -59,27 +59,27 @@ class PoseGraph::Impl {
                             const Drift& detour);
     void append_after_gap(KeyframeNode node);
     void close_loops();
-    void add_loop(int node, const graph::Verification& found);
+    void add_loop(int node, const Verification& found);
     void carry_part(int node, const Pose& node_from_newest);
     double sight(const Keyframe& keyframe);
     void let_go(int node);
 
     GraphOptions options_;
-    graph::Keyframes keyframes_;
-    graph::Successors successors_;
-    graph::Topology topology_;
-    graph::Landmarks landmarks_{graph::landmark_options(options_)};
-    graph::LoopSearch search_{options_};
-    graph::ClosureHistory history_;
-    graph::Redundancy redundancy_{options_};
-    graph::Schedule schedule_{options_};
-    graph::PublishedTrajectory trajectory_{options_};
+    Keyframes keyframes_;
+    Successors successors_;
+    Topology topology_;
+    Landmarks landmarks_{landmark_options(options_)};
+    LoopSearch search_{options_};
+    ClosureHistory history_;
+    Redundancy redundancy_{options_};
+    Schedule schedule_{options_};
+    PublishedTrajectory trajectory_{options_};
     GraphCounts counts_;
 };
 
 void PoseGraph::Impl::extend(const Keyframe& keyframe) {
     const bool is_first_a_stray = keyframes_.size() == 1 && !expects(keyframe.id);
-    graph::check(keyframe,
+    check(keyframe,
                  keyframes_.empty() || is_first_a_stray ? std::nullopt : std::optional(keyframes_.back().id));
     if (is_first_a_stray) start_anew();
     append(keyframe);
@@ -99,12 +99,12 @@ void PoseGraph::Impl::start_anew() {
 /// Adds the node, places it and ties it to the previous one.
 void PoseGraph::Impl::append(const Keyframe& keyframe) {
     KeyframeNode node{keyframe.id, keyframe.utime, keyframe.odom_from_camera,
-                      graph::make_view(keyframe, options_.max_features)};
+                      make_view(keyframe, options_.max_features)};
     counts_.features_left_out += keyframe.features.size() - node.view.points.size();
     search_.add(node.view);
     topology_.add_node();
     const int previous = keyframes_.node_of(keyframe.previous_id);
-    const graph::Successor* successor = successors_.of(keyframe.previous_id);
+    const Successor* successor = successors_.of(keyframe.previous_id);
     if (previous >= 0) {
         append_by_odometry(previous, std::move(node), keyframe.previous_from_camera, keyframe.covariance,
                            {0, 0});
@@ -122,7 +122,7 @@ void PoseGraph::Impl::append(const Keyframe& keyframe) {
 /// `step` leads from the node; `detour` is how far it may be off besides.
 void PoseGraph::Impl::append_by_odometry(int from, KeyframeNode node, const Pose& step,
                                          const Matrix6d& covariance, const Drift& detour) {
-    topology_.add_odometry(graph::odometry_tie(options_, from, keyframes_.size(), step, covariance, detour));
+    topology_.add_odometry(odometry_tie(options_, from, keyframes_.size(), step, covariance, detour));
     keyframes_.add(std::move(node), orthonormalised(keyframes_.pose(from) * step), from);
 }
 
@@ -132,7 +132,7 @@ void PoseGraph::Impl::append_after_gap(KeyframeNode node) {
     const KeyframeNode& before = keyframes_.back();
     const double seconds = std::clamp(
         static_cast<double>(node.utime) * 1e-6 - static_cast<double>(before.utime) * 1e-6, 0.0, 3600.0);
-    topology_.add_gap(graph::gap_tie(options_, last, last + 1,
+    topology_.add_gap(gap_tie(options_, last, last + 1,
                                      before.odom_from_camera.inverse(Eigen::Isometry) * node.odom_from_camera,
                                      seconds));
     const Pose pose = orthonormalised(trajectory().world_from_odom * node.odom_from_camera);
@@ -153,13 +153,13 @@ void PoseGraph::Impl::close_loops() {
     }
 }
 
-void PoseGraph::Impl::add_loop(int node, const graph::Verification& found) {
+void PoseGraph::Impl::add_loop(int node, const Verification& found) {
     carry_part(node, found.a_from_b);
     const KeyframeNode &older = keyframes_[node], &newest = keyframes_.back();
     const std::int64_t number = history_.add({older.id, newest.id, older.utime, newest.utime, found.a_from_b,
                                               found.covariance, found.matches, found.inliers, 1.0});
     topology_.add_loop(
-        graph::loop_tie(options_, node, keyframes_.newest(), found.a_from_b, found.covariance, number));
+        loop_tie(options_, node, keyframes_.newest(), found.a_from_b, found.covariance, number));
 }
 
 /// When a loop closure is the first tie between two parts of the graph, the part without the first keyframe
@@ -187,8 +187,8 @@ double PoseGraph::Impl::sight(const Keyframe& keyframe) {
     return landmarks_.add(newest, keyframe.regions, keyframes_.pose(newest), keyframe.noise);
 }
 
-std::unique_ptr<graph::OptimisationTask> PoseGraph::Impl::prepare() {
-    auto task = std::make_unique<graph::OptimisationTask>();
+std::unique_ptr<OptimisationTask> PoseGraph::Impl::prepare() {
+    auto task = std::make_unique<OptimisationTask>();
     task->edges = topology_.edges(false);
     if (schedule_.is_far(topology_.worst_new_loop(keyframes_.poses()))) {
         task->trusting_edges = topology_.edges(true);
@@ -205,18 +205,18 @@ std::unique_ptr<graph::OptimisationTask> PoseGraph::Impl::prepare() {
 }
 
 /// Takes the poses and landmarks that an optimisation found; later ones follow those they hang on.
-void PoseGraph::Impl::apply(const graph::OptimisationTask& task) {
+void PoseGraph::Impl::apply(const OptimisationTask& task) {
     counts_.failed_optimisations += task.failed;
     if (!schedule_.end(task.started)) return;
     const std::vector<Pose> moves = keyframes_.follow(task.poses);
     landmarks_.follow(task.landmarks, moves);
     landmarks_.merge();
     topology_.weigh(task.loops, keyframes_.poses(), options_.kernel_width);
-    for (const graph::Tie& loop : topology_.loops()) history_.set_weight(loop.closure, loop.weight);
+    for (const Tie& loop : topology_.loops()) history_.set_weight(loop.closure, loop.weight);
 }
 
 void PoseGraph::Impl::optimise() {
-    const std::unique_ptr<graph::OptimisationTask> task = prepare();
+    const std::unique_ptr<OptimisationTask> task = prepare();
     task->run();
     apply(*task);
 }
@@ -236,7 +236,7 @@ void PoseGraph::Impl::thin_out() {
 /// yet.
 void PoseGraph::Impl::let_go(int node) {
     if (node == 0 || topology_.has_unapplied_loop(node)) return;
-    const std::optional<graph::Tie> to_keeper = topology_.nearest_trusted(node, keyframes_.poses());
+    const std::optional<Tie> to_keeper = topology_.nearest_trusted(node, keyframes_.poses());
     if (!to_keeper) return;
     const int keeper = to_keeper->other(node), id = keyframes_[node].id;
     const Pose keeper_from_gone = keyframes_.between(keeper, node);
@@ -255,7 +255,7 @@ std::size_t PoseGraph::Impl::memory_bytes() const {
            landmarks_.memory_bytes() + search_.memory_bytes() + history_.memory_bytes();
 }
 
-GraphOptimisation::GraphOptimisation(std::unique_ptr<graph::OptimisationTask> task)
+GraphOptimisation::GraphOptimisation(std::unique_ptr<OptimisationTask> task)
     : task_(std::move(task)) {}
 GraphOptimisation::~GraphOptimisation() = default;
 GraphOptimisation::GraphOptimisation(GraphOptimisation&&) noexcept = default;

@@ -11,9 +11,7 @@
 
 namespace planemap::graph {
 
-namespace graph {
 struct OptimisationTask;
-}
 
 /// What a graph did without.
 struct GraphCounts {
@@ -26,17 +24,17 @@ struct GraphCounts {
 /// on another thread while the graph grows.
 class GraphOptimisation {
   public:
-    explicit GraphOptimisation(std::unique_ptr<graph::OptimisationTask> task);
+    explicit GraphOptimisation(std::unique_ptr<OptimisationTask> task);
     ~GraphOptimisation();
     GraphOptimisation(GraphOptimisation&&) noexcept;
     GraphOptimisation& operator=(GraphOptimisation&&) noexcept;
 
     /// Call it once; then give it back to PoseGraph::apply().
     void run();
-    const graph::OptimisationTask& task() const { return *task_; }
+    const OptimisationTask& task() const { return *task_; }
 
   private:
-    std::unique_ptr<graph::OptimisationTask> task_;
+    std::unique_ptr<OptimisationTask> task_;
 };
 
 /// Keyframes, the edges between them, and the poses that fit all edges best. World is the odom frame of the

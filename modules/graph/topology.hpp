@@ -55,7 +55,7 @@ class Topology {
     /// by how well they fit, with a Cauchy kernel of this width (standard deviations).
     void weigh(std::size_t known, const std::vector<Pose>& poses, double kernel_width);
 
-    /// Lets a node go; its ties go over to the other node of `to_keeper`, see graph::hand_over(). `poses` are
+    /// Lets a node go; its ties go over to the other node of `to_keeper`, see hand_over(). `poses` are
     /// those before that.
     void hand_over(const Tie& to_keeper, int gone, const std::vector<Pose>& poses);
 

@@ -137,8 +137,8 @@ void time_graph(int count) {
 /// The poses, edges and sightings of a walk whose every keyframe has two loop closures to earlier rounds.
 struct Problem {
     std::vector<Pose> truth, poses;
-    std::vector<graph::PoseEdge> edges;
-    graph::Landmarks landmarks{{}};
+    std::vector<PoseEdge> edges;
+    Landmarks landmarks{{}};
 
     void add_edge(int from, int to, double sigma_m, double sigma_rad, bool robust, Random& random) {
         Twist error;
@@ -146,12 +146,12 @@ struct Problem {
         edges.push_back({from, to,
                          truth[static_cast<std::size_t>(from)].inverse(Eigen::Isometry) *
                              truth[static_cast<std::size_t>(to)] * pose_from_twist(error),
-                         graph::sqrt_information(Matrix6d::Zero(), sigma_m, sigma_rad), robust});
+                         sqrt_information(Matrix6d::Zero(), sigma_m, sigma_rad), robust});
     }
-    graph::OptimisationReport optimise() {
-        std::vector<graph::Landmark> planes = landmarks.landmarks();
-        const graph::OptimisationReport report =
-            graph::optimise(poses, edges, 0, {3.0, 30}, &planes, landmarks.shared());
+    OptimisationReport optimise() {
+        std::vector<Landmark> planes = landmarks.landmarks();
+        const OptimisationReport report =
+            optimise(poses, edges, 0, {3.0, 30}, &planes, landmarks.shared());
         landmarks.follow(planes, {});
         return report;
     }
@@ -181,14 +181,14 @@ void time_optimisation(int count) {
     Random random(3);
     Problem problem = dense_problem(count, random);
     Stopwatch cold;
-    const graph::OptimisationReport first = problem.optimise();
+    const OptimisationReport first = problem.optimise();
     std::printf(
         "optimisation of %d keyframes, %zu edges, %zu sightings\n  from odometry's poses: %.1f ms, %d "
         "iterations\n",
         count, problem.edges.size(), problem.landmarks.shared().size(), cold.ms(), first.iterations);
     problem.add_edge(count / 2, count - 1, 0.03, 0.006, true, random);
     Stopwatch warm;
-    const graph::OptimisationReport second = problem.optimise();
+    const OptimisationReport second = problem.optimise();
     std::printf("  after one more loop closure: %.1f ms, %d iterations\n", warm.ms(), second.iterations);
 }
 
@@ -209,7 +209,7 @@ std::vector<Descriptor> place(Random& random, const std::vector<Descriptor>& sto
 void time_index(int count) {
     Random random(2);
     const std::vector<Descriptor> stock = place(random, {Descriptor{}}, 20000);
-    graph::PlaceIndex index;
+    PlaceIndex index;
     std::vector<double> add, query;
     for (int i = 0; i < count; ++i) {
         const std::vector<Descriptor> descriptors = place(random, stock, 600);
