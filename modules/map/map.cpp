@@ -119,7 +119,7 @@ void PlaneMapper::fold() {
 void PlaneMapper::hand_over_replaced(const KeyframeTrajectory& trajectory) {
     for (const StoredKeyframe& gone : keyframes_.take_replaced(trajectory.keyframes)) {
         hand_over(gone, keyframes_.nearest(*gone.world_from_camera, kHeirs), [&](const StoredRegion& r) {
-            return planes_.model().reliability(r, keyframe.noise).sigma_m;
+            return planes_.model().reliability(r, gone.noise).sigma_m;
         });
         ++replaced_;
         settled_ = false;
