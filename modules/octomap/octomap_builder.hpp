@@ -4,7 +4,6 @@
 #include <octomap/OcTree.h>
 
 #include <cstddef>
-#include <map>
 #include <memory>
 #include <optional>
 #include <stop_token>
@@ -14,30 +13,15 @@
 #include "core/camera.hpp"
 #include "core/image.hpp"
 #include "core/keyframe.hpp"
-#include "core/option_list.hpp"
-#include "core/replacement.hpp"
+#include "octomap/kept_keyframes.hpp"
+#include "octomap/keyframe_tracer.hpp"
+#include "octomap/options.hpp"
 #include "octomap/octomap_sizes.hpp"
-#include "octomap/scan_insertion.hpp"
 #include "octomap/stored_scan.hpp"
 #include "octomap/tree_blocks.hpp"
+#include "octomap/tree_rebuild.hpp"
 
-namespace planemap::octomap {
-
-/// Options of OctomapBuilder; options_of() says what each is.
-struct OctomapOptions {
-    double resolution_m = 0.05;
-    double max_range_m = 0;
-    int subsample = 1;
-    std::size_t max_keyframes = 2000;
-    double moved_m = 0.002;
-    double moved_deg = 0.05;
-
-    /// Throws std::invalid_argument that names every bad field.
-    void validate() const;
-};
-
-/// Refers to `options`, which must outlive it.
-OptionList options_of(OctomapOptions& options);
+namespace planemap {
 
 /// Builds an OctoMap from the keyframes' depth images, beside the map of planes, and rebuilds it when the
 /// graph moves keyframes. OctoMap's update is not exactly independent of order (log-odds are clamped), so
@@ -47,6 +31,9 @@ OptionList options_of(OctomapOptions& options);
 /// Two ways to use it, with the same tree in the end: add(), update() and flush(); or keep(), update() and
 /// advance() from a thread that has other things to do between the steps. The tree stays whole and grows on
 /// while a rebuild is under way, and a rebuild always ends: what moves meanwhile is for the next one.
+///
+/// KeptKeyframes knows the depth images and where they belong, TreeRebuild what is under way; the builder
+/// owns the trees, and decides what is next.
 class OctomapBuilder {
   public:
     /// Throws std::invalid_argument for bad options.
@@ -78,14 +65,14 @@ class OctomapBuilder {
     /// Brings inner nodes up to date and prunes; what is not in the tree yet stays out of it.
     void tidy(const std::stop_token& stop = {});
     /// True while some keyframe in the tree is not where it should be.
-    bool rebuild_due() const { return rebuild_ || misplaced_ > 0 || dirty_.size() > 0; }
+    bool rebuild_due() const { return rebuild_ || keyframes_.misplaced() > 0 || dirty_.size() > 0; }
     /// Keyframes that are kept and not in the tree yet.
-    std::size_t waiting() const;
+    std::size_t waiting() const { return keyframes_.waiting(); }
     /// Keyframes in the tree, frozen ones included.
-    std::size_t keyframes_in_tree() const;
+    std::size_t keyframes_in_tree() const { return frozen_ + keyframes_.inside(); }
 
     /// The tree as of the last flush() or tidy().
-    const ::octomap::OcTree& tree() const { return *tree_; }
+    const octomap::OcTree& tree() const { return *tree_; }
     /// Sizes of the tree as of the last flush() or tidy().
     OctomapSizes sizes() const { return sizes_of(*tree_); }
     /// The bytes of a .bt file: maximum likelihood, pruned.
@@ -99,10 +86,12 @@ class OctomapBuilder {
 
     /// Points of a voxel cloud: number of voxels of the given edge that hold at least one point of the kept
     /// depth images at their newest poses.
-    std::size_t voxel_cloud_size(double voxel_m) const;
+    std::size_t voxel_cloud_size(double voxel_m) const {
+        return keyframes_.voxel_cloud_size(voxel_m, options_.subsample);
+    }
 
     /// Bytes of the depth images kept for rebuilding.
-    std::size_t stored_bytes() const;
+    std::size_t stored_bytes() const { return keyframes_.bytes(); }
     /// What it takes to go on building: the trees (of a rebuild and of the frozen keyframes too), the depth
     /// images kept and the scratch memory of a scan. A walk over the trees: not for every message.
     std::size_t working_bytes() const;
@@ -111,62 +100,27 @@ class OctomapBuilder {
     /// How often the tree was rebuilt.
     std::size_t rebuilds() const { return rebuilds_; }
     /// Scans that rebuilds inserted again: what they cost.
-    std::size_t reinserted() const { return reinserted_; }
+    std::size_t reinserted() const { return reinserted_ + (rebuild_ ? rebuild_->reinserted() : 0); }
 
   private:
-    struct Keyframe {
-        std::shared_ptr<const StoredScan> scan;
-        Pose world_from_camera;
-        std::vector<Voxel> blocks = {};  ///< that it touches in tree_
-        bool inside = false;             ///< tree_ holds it
-        bool misplaced =
-            false;  ///< tree_ (or what the rebuild will make of it) does not hold it as it should
-    };
-    /// A keyframe as a rebuild takes it, whatever becomes of it meanwhile.
-    struct Planned {
-        int id;
-        std::shared_ptr<const StoredScan> scan;
-        Pose world_from_camera;
-        std::vector<Voxel> blocks;  ///< that it touches, as far as is known
-        bool moved = false;         ///< the blocks are those of its old place
-        bool is_new = false;        ///< no block of the new tree holds it yet, the other ones neither
-        bool frozen_aside = false;  ///< was frozen meanwhile, at another pose
-    };
-    struct Rebuild {
-        std::vector<Planned> plan;  ///< ascending id
-        BlockSet dirty;             ///< blocks that are built anew
-        bool everything = false;    ///< all are
-        std::size_t surveyed = 0, inserted = 0;
-        std::unique_ptr<::octomap::OcTree> tree;  ///< null while the dirty blocks are being found
-    };
-
     bool insert_next(const std::stop_token& stop);
     bool rebuild_next(const std::stop_token& stop);
     void begin_rebuild();
-    void survey(Planned& planned, const std::stop_token& stop);
-    void begin_tree(const std::stop_token& stop);
-    bool is_touched(const Planned& planned) const;
-    void insert_again(Planned& planned, const std::stop_token& stop);
     void end_rebuild();
-    void trace(const StoredScan& scan, const Pose& world_from_camera, const std::stop_token& stop);
     bool is_full() const { return keyframes_.size() > options_.max_keyframes; }
     void freeze_oldest(const std::stop_token& stop);
-    void mark_misplaced(Keyframe& keyframe);
     void mark_dirty(const std::vector<Voxel>& blocks);
 
     OctomapOptions options_;
-    std::map<int, Keyframe> keyframes_;        ///< by id
-    std::unique_ptr<::octomap::OcTree> base_;  ///< of the frozen keyframes; null while there are none
-    std::unique_ptr<::octomap::OcTree> tree_;
-    KeyframePoses poses_;               ///< by the trajectories
-    std::optional<int> last_inserted_;  ///< highest id in tree_: higher ones are still to be inserted
-    std::optional<int> last_frozen_;
-    BlockSet dirty_;             ///< blocks to be built anew for keyframes that are not kept any more
-    std::size_t misplaced_ = 0;  ///< of keyframes_
-    std::optional<Rebuild> rebuild_;
-    ScanInserter inserter_;
+    KeptKeyframes keyframes_;
+    KeyframeTracer tracer_;
+    std::unique_ptr<octomap::OcTree> base_;  ///< of the frozen keyframes; null while there are none
+    std::unique_ptr<octomap::OcTree> tree_;
+    BlockSet dirty_;  ///< blocks to be built anew for keyframes that are not kept any more
+    std::optional<TreeRebuild> rebuild_;
     bool stale_ = false;  ///< inner nodes are not up to date
-    std::size_t frozen_ = 0, rebuilds_ = 0, reinserted_ = 0;
+    std::size_t frozen_ = 0, rebuilds_ = 0;
+    std::size_t reinserted_ = 0;  ///< by the rebuilds that ended
 };
 
-}  // namespace planemap::octomap
+}  // namespace planemap

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "octomap/octomap_builder.hpp"
+#include "octomap/options.hpp"
 
 namespace planemap::octomap {
 
