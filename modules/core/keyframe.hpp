@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/pose.hpp"
+#include "core/geometry/pose.hpp"
 #include "core/region.hpp"
 
 namespace planemap {

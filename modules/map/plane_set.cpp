@@ -6,7 +6,7 @@
 #include <queue>
 #include <tuple>
 
-#include "core/union_find.hpp"
+#include "core/geometry/union_find.hpp"
 
 namespace planemap::map {
 
@@ -92,7 +92,8 @@ std::vector<std::size_t> PlaneSet::merge(const std::vector<std::size_t>& grown) 
     while (!pairs.empty()) {
         const auto [score, a, b, version_a, version_b] = pairs.top();
         pairs.pop();
-        if (!merged.stands(a) || !merged.stands(b) || version[a] != version_a || version[b] != version_b) continue;
+        if (!merged.stands(a) || !merged.stands(b) || version[a] != version_a || version[b] != version_b)
+            continue;
         const int id = std::min(estimates_[a].id, estimates_[b].id);
         estimates_[a].absorb(estimates_[b]);
         estimates_[a].id = id;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bench_map/judge.hpp"
-#include "core/box.hpp"
+#include "core/geometry/box.hpp"
 
 namespace planemap::bench_map {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "core/outline.hpp"
+#include "core/geometry/outline.hpp"
 
 namespace planemap::bench_map {
 

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 
-#include "core/box.hpp"
+#include "core/geometry/box.hpp"
 
 namespace planemap::bench_map {
 
@@ -123,7 +123,8 @@ void TruthCollector::add(const simulator::View& view, const Sight& sight) {
         look(groups_[i], static_cast<std::int16_t>(i), view, sight);
 }
 
-void TruthCollector::look(Group& group, std::int16_t index, const simulator::View& view, const Sight& sight) const {
+void TruthCollector::look(Group& group, std::int16_t index, const simulator::View& view,
+                          const Sight& sight) const {
     const simulator::View& v = view;
     const Pose camera_from_plane = view.world_from_camera.inverse(Eigen::Isometry) * group.world_from_plane;
     const Eigen::Vector3d eye = camera_from_plane.inverse(Eigen::Isometry).translation();  // on the plane

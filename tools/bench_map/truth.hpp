@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bench_map/plane_raster.hpp"
-#include "core/plane.hpp"
+#include "core/geometry/plane.hpp"
 #include "simulator/renderer.hpp"
 
 namespace planemap::bench_map {

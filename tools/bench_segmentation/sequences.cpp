@@ -10,7 +10,7 @@
 
 #include "benchmark/choices.hpp"
 #include "core/files.hpp"
-#include "core/moments.hpp"
+#include "core/geometry/moments.hpp"
 #include "core/trajectory.hpp"
 #include "sensor/camera_file.hpp"
 #include "sensor/dataset.hpp"
@@ -126,7 +126,8 @@ Truth truth_of_view(const simulator::World& world, const simulator::View& view, 
     const std::vector<std::size_t> first = first_on_same_plane(world);
     const Pose camera_from_world = view.world_from_camera.inverse();
     std::vector<Plane> planes;
-    for (const simulator::Surface& surface : world.surfaces) planes.push_back(camera_from_world * surface.plane);
+    for (const simulator::Surface& surface : world.surfaces)
+        planes.push_back(camera_from_world * surface.plane);
     Image<std::uint16_t> surfaces(depth.width, depth.height);
     for (std::size_t i = 0; i < surfaces.pixels.size(); ++i) {
         const int rectangle = view.rectangle.pixels[i];
@@ -139,8 +140,8 @@ Truth truth_of_view(const simulator::World& world, const simulator::View& view, 
 
 /// The rendered room, 30 s of a hand-held walk through it.
 Sequence open_office(std::size_t frames) {
-    const auto source =
-        std::make_shared<const simulator::SimulatedSource>(simulator::parse_simulator_name("sim:office?frames=900"));
+    const auto source = std::make_shared<const simulator::SimulatedSource>(
+        simulator::parse_simulator_name("sim:office?frames=900"));
     const auto load = [source](std::size_t index) {
         const simulator::View view = source->depth_view(index);
         BenchFrame frame;
@@ -239,8 +240,8 @@ CameraInfo kinect_camera() {
     return camera;
 }
 
-BenchFrame render_frame(const simulator::World& world, const CameraInfo& camera, const Pose& world_from_camera,
-                        bool noise, std::uint64_t seed) {
+BenchFrame render_frame(const simulator::World& world, const CameraInfo& camera,
+                        const Pose& world_from_camera, bool noise, std::uint64_t seed) {
     const simulator::View view = simulator::render_view(world, camera.depth, world_from_camera);
     simulator::DepthSensorOptions options;
     options.noise = noise;

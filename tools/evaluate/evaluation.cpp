@@ -11,7 +11,7 @@
 #include <string>
 #include <tuple>
 
-#include "core/rigid_fit.hpp"
+#include "core/geometry/rigid_fit.hpp"
 #include "core/validation.hpp"
 
 namespace planemap {
