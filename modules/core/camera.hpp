@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "core/pose.hpp"
+#include "core/geometry/pose.hpp"
 #include "core/validation.hpp"
 
 namespace planemap {

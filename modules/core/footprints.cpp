@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "core/inverse_depth.hpp"
+#include "core/geometry/inverse_depth.hpp"
 
 namespace planemap {
 

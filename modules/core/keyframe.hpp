@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/camera.hpp"
-#include "core/pose.hpp"
+#include "core/geometry/pose.hpp"
 #include "core/region.hpp"
 
 namespace planemap {

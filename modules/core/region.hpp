@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "core/box.hpp"
-#include "core/moments.hpp"
-#include "core/outline.hpp"
+#include "core/geometry/box.hpp"
+#include "core/geometry/moments.hpp"
+#include "core/geometry/outline.hpp"
 
 namespace planemap {
 

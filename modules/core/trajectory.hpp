@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/pose.hpp"
+#include "core/geometry/pose.hpp"
 
 namespace planemap {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "core/outline_index.hpp"
+#include "core/geometry/outline_index.hpp"
 #include "exports/exports.hpp"
 #include "exports/parts.hpp"
 

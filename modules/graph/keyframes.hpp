@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/pose.hpp"
+#include "core/geometry/pose.hpp"
 #include "graph/keyframe_view.hpp"
 #include "graph/node_index.hpp"
 

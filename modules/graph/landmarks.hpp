@@ -6,10 +6,11 @@
 #include <optional>
 #include <vector>
 
-#include "core/box.hpp"
 #include "core/camera.hpp"
+#include "core/geometry/box.hpp"
+#include "core/geometry/union_find.hpp"
 #include "core/region.hpp"
-#include "core/union_find.hpp"
+#include "core/geometry/union_find.hpp"
 #include "graph/options.hpp"
 
 namespace planemap::graph {

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "core/pose.hpp"
+#include "core/geometry/pose.hpp"
 
 namespace planemap::graph {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "core/pose.hpp"
+#include "core/geometry/pose.hpp"
 #include "graph/landmarks.hpp"
 
 namespace planemap::graph {

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <map>
 
-#include "core/pose.hpp"
+#include "core/geometry/pose.hpp"
 #include "graph/ties.hpp"
 
 namespace planemap::graph {

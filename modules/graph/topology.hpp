@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/union_find.hpp"
+#include "core/geometry/union_find.hpp"
 #include "graph/node_index.hpp"
 #include "graph/ties.hpp"
 

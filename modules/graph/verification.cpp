@@ -11,7 +11,7 @@
 #include <random>
 #include <utility>
 
-#include "core/rigid_fit.hpp"
+#include "core/geometry/rigid_fit.hpp"
 #include "graph/comparison.hpp"
 
 namespace planemap::graph {

@@ -5,7 +5,7 @@
 #include <bit>
 #include <cmath>
 
-#include "map/bitmap.hpp"
+#include "core/geometry/bitmap.hpp"
 
 namespace planemap::map {
 

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/crossing.hpp"
-#include "core/outline.hpp"
-#include "core/pose.hpp"
+#include "core/geometry/crossing.hpp"
+#include "core/geometry/outline.hpp"
+#include "core/geometry/pose.hpp"
 #include "map/evidence_cells.hpp"
 
 namespace planemap::map {

@@ -5,8 +5,8 @@
 #include <optional>
 #include <span>
 
+#include "core/geometry/pose.hpp"
 #include "core/plane_map.hpp"
-#include "core/pose.hpp"
 
 namespace planemap::map {
 

@@ -4,8 +4,8 @@
 
 #include <span>
 
+#include "core/geometry/pose.hpp"
 #include "core/plane_map.hpp"
-#include "core/pose.hpp"
 #include "map/gravity.hpp"
 
 namespace planemap::map {

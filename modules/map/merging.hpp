@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "core/box.hpp"
+#include "core/geometry/box.hpp"
 
 namespace planemap::map {
 

@@ -6,7 +6,7 @@
 #include <queue>
 #include <tuple>
 
-#include "core/union_find.hpp"
+#include "core/geometry/union_find.hpp"
 
 namespace planemap::map {
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/camera.hpp"
+#include "core/geometry/pose.hpp"
 #include "core/image.hpp"
-#include "core/pose.hpp"
 
 namespace planemap::octomap {
 

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "core/pose.hpp"
+#include "core/geometry/pose.hpp"
 #include "core/region.hpp"
 #include "odometry/flow.hpp"
 #include "odometry/planar_patches.hpp"

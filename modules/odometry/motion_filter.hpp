@@ -2,7 +2,7 @@
 // The camera's motion from one pose to the next: predicts, and takes the jitter out of measured poses.
 #pragma once
 
-#include "core/pose.hpp"
+#include "core/geometry/pose.hpp"
 
 namespace planemap::odometry {
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/camera.hpp"
+#include "core/geometry/plane.hpp"
 #include "core/image.hpp"
-#include "core/plane.hpp"
 #include "core/region.hpp"
 #include "odometry/alignment.hpp"
 

@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/box.hpp"
+#include "core/geometry/box.hpp"
 
 namespace planemap::segmentation {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/camera.hpp"
-#include "core/union_find.hpp"
+#include "core/geometry/union_find.hpp"
 #include "segmentation/point_sums.hpp"
 
 namespace planemap::segmentation {

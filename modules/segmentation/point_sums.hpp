@@ -6,8 +6,8 @@
 
 #include <cmath>
 
-#include "core/moments.hpp"
-#include "core/plane.hpp"
+#include "core/geometry/moments.hpp"
+#include "core/geometry/plane.hpp"
 
 namespace planemap::segmentation {
 

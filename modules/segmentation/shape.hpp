@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/camera.hpp"
-#include "core/crossing.hpp"
+#include "core/geometry/crossing.hpp"
 #include "core/image.hpp"
 #include "core/region.hpp"
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/plane.hpp"
+#include "core/geometry/plane.hpp"
 #include "simulator/texture.hpp"
 
 namespace planemap::simulator {

@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "core/pose.hpp"
+#include "core/geometry/pose.hpp"
 
 namespace planemap::test {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/outline.hpp"
+#include "core/geometry/outline.hpp"
 
 namespace planemap::test {
 

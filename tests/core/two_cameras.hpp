@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "core/camera.hpp"
+#include "core/geometry/plane.hpp"
 #include "core/image.hpp"
-#include "core/plane.hpp"
 #include "core/random_values.hpp"
 
 namespace planemap::test {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/angle.hpp"
-#include "core/box.hpp"
+#include "core/geometry/box.hpp"
 #include "evaluate/plane_judge.hpp"
 
 namespace planemap::evaluation {

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "core/camera.hpp"
+#include "core/geometry/moments.hpp"
+#include "core/geometry/plane.hpp"
 #include "core/image.hpp"
-#include "core/moments.hpp"
-#include "core/plane.hpp"
 #include "core/region.hpp"
 
 namespace planemap::odometry {

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "core/camera.hpp"
+#include "core/geometry/moments.hpp"
 #include "core/image.hpp"
-#include "core/moments.hpp"
 #include "segmentation/segmenter.hpp"
 
 namespace planemap::segmentation::scene {

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "core/camera.hpp"
+#include "core/geometry/moments.hpp"
 #include "core/image.hpp"
-#include "core/moments.hpp"
 #include "core/plane_map.hpp"
 #include "core/trajectory.hpp"
 

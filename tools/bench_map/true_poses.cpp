@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "core/rigid_fit.hpp"
+#include "core/geometry/rigid_fit.hpp"
 #include "pipeline/given_poses.hpp"
 
 namespace planemap::bench_map {

@@ -7,7 +7,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/angle.hpp"
-#include "core/box.hpp"
+#include "core/geometry/box.hpp"
 #include "simulator/simulated_source.hpp"
 
 namespace planemap::bench_map {

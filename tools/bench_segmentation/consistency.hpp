@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "core/plane.hpp"
+#include "core/geometry/plane.hpp"
 
 namespace planemap::bench {
 

@@ -8,7 +8,7 @@
 #include <tuple>
 
 #include "core/angle.hpp"
-#include "core/moments.hpp"
+#include "core/geometry/moments.hpp"
 #include "core/trajectory.hpp"
 #include "segment/read_image.hpp"
 #include "sensor/camera_file.hpp"

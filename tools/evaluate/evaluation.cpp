@@ -9,7 +9,7 @@
 #include <tuple>
 
 #include "core/angle.hpp"
-#include "core/rigid_fit.hpp"
+#include "core/geometry/rigid_fit.hpp"
 #include "core/validation.hpp"
 
 namespace planemap {

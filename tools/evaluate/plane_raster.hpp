@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "core/outline.hpp"
-#include "core/pose.hpp"
+#include "core/geometry/outline.hpp"
+#include "core/geometry/pose.hpp"
 
 namespace planemap::evaluation {
 

@@ -7,7 +7,7 @@
 #include <map>
 #include <tuple>
 
-#include "core/outline_index.hpp"
+#include "core/geometry/outline_index.hpp"
 #include "octomap/voxel_set.hpp"
 
 namespace planemap {

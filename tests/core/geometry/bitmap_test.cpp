@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "map/bitmap.hpp"
+#include "core/geometry/bitmap.hpp"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-namespace planemap::map {
+namespace planemap {
 namespace {
 
 /// A bitmap of 3 words from word -1 on, and the same cells as a Mask; cell (x, y) of the one is (x + 64, y +
@@ -93,4 +93,4 @@ TEST(Bitmap, Empty) {
 }
 
 }  // namespace
-}  // namespace planemap::map
+}  // namespace planemap

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "map/bitmap.hpp"
+#include "core/geometry/bitmap.hpp"
 
 #include <algorithm>
 #include <array>
 #include <bit>
 
-namespace planemap::map {
+namespace planemap {
 
 std::size_t Bitmap::count() const {
     std::size_t total = 0;
@@ -124,4 +124,4 @@ Outline Bitmap::trace() const {
     return outline;
 }
 
-}  // namespace planemap::map
+}  // namespace planemap

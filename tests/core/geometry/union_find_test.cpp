@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/union_find.hpp"
+#include "core/geometry/union_find.hpp"
 
 #include <gtest/gtest.h>
 

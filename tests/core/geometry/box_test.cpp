@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/box.hpp"
+#include "core/geometry/box.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/pose.hpp"
+#include "core/geometry/pose.hpp"
 
 #include <gtest/gtest.h>
 

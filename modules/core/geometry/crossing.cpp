@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/crossing.hpp"
+#include "core/geometry/crossing.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/plane.hpp"
+#include "core/geometry/plane.hpp"
 
 #include <gtest/gtest.h>
 

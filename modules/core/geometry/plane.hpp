@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "core/pose.hpp"
+#include "core/geometry/pose.hpp"
 
 namespace planemap {
 

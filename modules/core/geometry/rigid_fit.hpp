@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "core/pose.hpp"
+#include "core/geometry/pose.hpp"
 
 namespace planemap {
 

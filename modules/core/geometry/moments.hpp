@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "core/plane.hpp"
+#include "core/geometry/plane.hpp"
 
 namespace planemap {
 

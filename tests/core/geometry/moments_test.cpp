@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/moments.hpp"
+#include "core/geometry/moments.hpp"
 
 #include <gtest/gtest.h>
 

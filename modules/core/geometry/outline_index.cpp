@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/outline_index.hpp"
+#include "core/geometry/outline_index.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
-#include "core/segment.hpp"
+#include "core/geometry/segment.hpp"
 
 namespace planemap {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/outline.hpp"
+#include "core/geometry/outline.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
 
-#include "core/outline_index.hpp"
-#include "core/segment.hpp"
+#include "core/geometry/outline_index.hpp"
+#include "core/geometry/segment.hpp"
 
 namespace planemap {
 

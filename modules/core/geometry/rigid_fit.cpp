@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/rigid_fit.hpp"
+#include "core/geometry/rigid_fit.hpp"
 
 #include <Eigen/LU>
 #include <Eigen/SVD>

@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "core/moments.hpp"
+#include "core/geometry/moments.hpp"
 
 namespace planemap {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/outline.hpp"
+#include "core/geometry/outline.hpp"
 
 namespace planemap {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/outline_index.hpp"
+#include "core/geometry/outline_index.hpp"
 
 #include <gtest/gtest.h>
 

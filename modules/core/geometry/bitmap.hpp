@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/outline.hpp"
+#include "core/geometry/outline.hpp"
 
-namespace planemap::map {
+namespace planemap {
 
 /// A binary image of which 64 cells of a row are one word, so that what is done to cells is done to 64 of
 /// them at once. Cells have integer coordinates of either sign; those outside are not set.
@@ -57,4 +57,4 @@ class Bitmap {
     std::vector<std::uint64_t> bits_;
 };
 
-}  // namespace planemap::map
+}  // namespace planemap

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/outline.hpp"
+#include "core/geometry/outline.hpp"
 
 #include <gtest/gtest.h>
 
