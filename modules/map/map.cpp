@@ -118,9 +118,8 @@ void PlaneMapper::fold() {
 /// Lets keyframes go that the graph replaced; what they saw goes over to those near them.
 void PlaneMapper::hand_over_replaced(const KeyframeTrajectory& trajectory) {
     for (const StoredKeyframe& gone : keyframes_.take_replaced(trajectory.keyframes)) {
-        hand_over(gone, keyframes_.nearest(*gone.world_from_camera, kHeirs), [&](const StoredRegion& r) {
-            return planes_.model().reliability(r, gone.noise).sigma_m;
-        });
+        hand_over(gone, keyframes_.nearest(*gone.world_from_camera, kHeirs),
+                  [&](const StoredRegion& r) { return planes_.model().reliability(r, gone.noise).sigma_m; });
         ++replaced_;
         settled_ = false;
     }

@@ -5,7 +5,7 @@
 #include <iterator>
 #include <numbers>
 
-namespace planemap {
+namespace planemap::octomap {
 
 bool KeptKeyframes::keep(int id, std::shared_ptr<const StoredScan> scan, const Pose& world_from_camera) {
     if (!is_valid(world_from_camera) || (last_gone_ && id <= *last_gone_)) return false;
@@ -23,8 +23,7 @@ void KeptKeyframes::move(const KeyframeTrajectory& trajectory) {
         const std::optional<Pose> now = poses_.pose_of(id);
         if (!now || !is_valid(*now)) continue;
         const Pose change = keyframe.world_from_camera.inverse(Eigen::Isometry) * *now;
-        if (change.translation().norm() <= moved_m_ &&
-            rotation_angle(change) <= radians(moved_deg_)) {
+        if (change.translation().norm() <= moved_m_ && rotation_angle(change) <= radians(moved_deg_)) {
             continue;
         }
         keyframe.world_from_camera = *now;
@@ -64,7 +63,7 @@ std::size_t KeptKeyframes::bytes() const {
 std::size_t KeptKeyframes::voxel_cloud_size(double voxel_m, int subsample) const {
     VoxelSet voxels;
     for (const auto& [id, keyframe] : keyframes_) {
-        for (const octomap::point3d& p : keyframe.scan->points(keyframe.world_from_camera, subsample)) {
+        for (const ::octomap::point3d& p : keyframe.scan->points(keyframe.world_from_camera, subsample)) {
             const Eigen::Array3d cell = (Eigen::Array3d(p.x(), p.y(), p.z()) / voxel_m).floor();
             if (!((cell.abs() < VoxelSet::kMaxCoordinate).all())) continue;
             voxels.insert(
@@ -102,4 +101,4 @@ std::pair<int, KeptKeyframe> KeptKeyframes::let_oldest_go() {
     return {oldest.key(), std::move(oldest.mapped())};
 }
 
-}  // namespace planemap
+}  // namespace planemap::octomap

@@ -14,7 +14,7 @@
 #include "octomap/stored_scan.hpp"
 #include "octomap/voxel_set.hpp"
 
-namespace planemap {
+namespace planemap::octomap {
 
 /// A keyframe whose depth is kept, and how the tree holds it.
 struct KeptKeyframe {
@@ -81,4 +81,4 @@ class KeptKeyframes {
     std::size_t misplaced_ = 0;
 };
 
-}  // namespace planemap
+}  // namespace planemap::octomap

@@ -12,7 +12,7 @@
 #include "octomap/stored_scan.hpp"
 #include "octomap/tree_blocks.hpp"
 
-namespace planemap {
+namespace planemap::octomap {
 
 /// Finds the cells that keyframes' depth images pass and hit, with the range and the pixels that the options
 /// ask for, and updates them in any tree of the same resolution. Holds the cells of one image at a time.
@@ -23,10 +23,10 @@ class KeyframeTracer {
         : max_range_m_(options.max_range_m), subsample_(options.subsample) {}
 
     /// Finds the cells; of the tree only its geometry is used. Once a stop is requested, not all of them.
-    void trace(const octomap::OcTree& tree, const StoredScan& scan, const Pose& world_from_camera,
+    void trace(const ::octomap::OcTree& tree, const StoredScan& scan, const Pose& world_from_camera,
                const std::stop_token& stop = {});
     /// Updates the cells that the last trace() found, if blocks are given only those in them.
-    void apply(octomap::OcTree& tree, const BlockSet* only = nullptr,
+    void apply(::octomap::OcTree& tree, const BlockSet* only = nullptr,
                const std::stop_token& stop = {}) const {
         inserter_.apply(tree, only, stop);
     }
@@ -41,4 +41,4 @@ class KeyframeTracer {
     ScanInserter inserter_;
 };
 
-}  // namespace planemap
+}  // namespace planemap::octomap

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-namespace planemap {
+namespace planemap::octomap {
 
 namespace {
 
@@ -18,7 +18,7 @@ OctomapBuilder::OctomapBuilder(OctomapOptions options)
     : options_(valid(options)),
       keyframes_(options_),
       tracer_(options_),
-      tree_(std::make_unique<octomap::OcTree>(options_.resolution_m)) {}
+      tree_(std::make_unique<::octomap::OcTree>(options_.resolution_m)) {}
 
 bool OctomapBuilder::add(int keyframe_id, const DepthImage& depth, const CameraInfo& camera,
                          const Pose& world_from_camera) {
@@ -107,7 +107,7 @@ void OctomapBuilder::end_rebuild() {
 
 void OctomapBuilder::freeze_oldest(const std::stop_token& stop) {
     const auto [id, keyframe] = keyframes_.let_oldest_go();
-    if (!base_) base_ = std::make_unique<octomap::OcTree>(options_.resolution_m);
+    if (!base_) base_ = std::make_unique<::octomap::OcTree>(options_.resolution_m);
     tracer_.trace(*base_, *keyframe.scan, keyframe.world_from_camera, stop);
     tracer_.apply(*base_, nullptr, stop);
     if (!keyframe.inside || keyframe.misplaced) {
@@ -144,4 +144,4 @@ std::size_t OctomapBuilder::working_bytes() const {
     return bytes;
 }
 
-}  // namespace planemap
+}  // namespace planemap::octomap

@@ -15,13 +15,13 @@
 #include "core/keyframe.hpp"
 #include "octomap/kept_keyframes.hpp"
 #include "octomap/keyframe_tracer.hpp"
-#include "octomap/options.hpp"
 #include "octomap/octomap_sizes.hpp"
+#include "octomap/options.hpp"
 #include "octomap/stored_scan.hpp"
 #include "octomap/tree_blocks.hpp"
 #include "octomap/tree_rebuild.hpp"
 
-namespace planemap {
+namespace planemap::octomap {
 
 /// Builds an OctoMap from the keyframes' depth images, beside the map of planes, and rebuilds it when the
 /// graph moves keyframes. OctoMap's update is not exactly independent of order (log-odds are clamped), so
@@ -72,7 +72,7 @@ class OctomapBuilder {
     std::size_t keyframes_in_tree() const { return frozen_ + keyframes_.inside(); }
 
     /// The tree as of the last flush() or tidy().
-    const octomap::OcTree& tree() const { return *tree_; }
+    const ::octomap::OcTree& tree() const { return *tree_; }
     /// Sizes of the tree as of the last flush() or tidy().
     OctomapSizes sizes() const { return sizes_of(*tree_); }
     /// The bytes of a .bt file: maximum likelihood, pruned.
@@ -114,8 +114,8 @@ class OctomapBuilder {
     OctomapOptions options_;
     KeptKeyframes keyframes_;
     KeyframeTracer tracer_;
-    std::unique_ptr<octomap::OcTree> base_;  ///< of the frozen keyframes; null while there are none
-    std::unique_ptr<octomap::OcTree> tree_;
+    std::unique_ptr<::octomap::OcTree> base_;  ///< of the frozen keyframes; null while there are none
+    std::unique_ptr<::octomap::OcTree> tree_;
     BlockSet dirty_;  ///< blocks to be built anew for keyframes that are not kept any more
     std::optional<TreeRebuild> rebuild_;
     bool stale_ = false;  ///< inner nodes are not up to date
@@ -123,4 +123,4 @@ class OctomapBuilder {
     std::size_t reinserted_ = 0;  ///< by the rebuilds that ended
 };
 
-}  // namespace planemap
+}  // namespace planemap::octomap

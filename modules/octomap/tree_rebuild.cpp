@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace planemap {
+namespace planemap::octomap {
 
 TreeRebuild::TreeRebuild(const KeptKeyframes& keyframes, BlockSet dirty)
     : dirty_(std::move(dirty)),
@@ -28,8 +28,8 @@ void TreeRebuild::note_frozen_aside(int id) {
     for (Planned& planned : plan_) planned.frozen_aside = planned.frozen_aside || planned.id == id;
 }
 
-bool TreeRebuild::advance(KeyframeTracer& tracer, const octomap::OcTree& tree, const octomap::OcTree* base,
-                          const std::stop_token& stop) {
+bool TreeRebuild::advance(KeyframeTracer& tracer, const ::octomap::OcTree& tree,
+                          const ::octomap::OcTree* base, const std::stop_token& stop) {
     const auto first_from = [this](std::size_t start, const auto& is_due) {
         const auto found =
             std::find_if(plan_.begin() + static_cast<std::ptrdiff_t>(start), plan_.end(), is_due);
@@ -50,7 +50,7 @@ bool TreeRebuild::advance(KeyframeTracer& tracer, const octomap::OcTree& tree, c
     return true;
 }
 
-void TreeRebuild::survey(Planned& planned, KeyframeTracer& tracer, const octomap::OcTree& tree,
+void TreeRebuild::survey(Planned& planned, KeyframeTracer& tracer, const ::octomap::OcTree& tree,
                          const std::stop_token& stop) {
     tracer.trace(tree, *planned.scan, planned.world_from_camera, stop);
     planned.blocks = tracer.blocks();
@@ -58,14 +58,14 @@ void TreeRebuild::survey(Planned& planned, KeyframeTracer& tracer, const octomap
     for (const Voxel& block : planned.blocks) dirty_.insert(block);
 }
 
-void TreeRebuild::begin_tree(const octomap::OcTree& tree, const octomap::OcTree* base,
+void TreeRebuild::begin_tree(const ::octomap::OcTree& tree, const ::octomap::OcTree* base,
                              const std::stop_token& stop) {
     if (!everything_) {
         tree_ = composed(tree, base, dirty_, stop);
     } else if (base != nullptr) {
-        tree_ = std::make_unique<octomap::OcTree>(*base);
+        tree_ = std::make_unique<::octomap::OcTree>(*base);
     } else {
-        tree_ = std::make_unique<octomap::OcTree>(tree.getResolution());
+        tree_ = std::make_unique<::octomap::OcTree>(tree.getResolution());
     }
 }
 
@@ -84,4 +84,4 @@ void TreeRebuild::insert_again(Planned& planned, KeyframeTracer& tracer, const s
     ++reinserted_;
 }
 
-}  // namespace planemap
+}  // namespace planemap::octomap

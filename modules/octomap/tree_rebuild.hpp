@@ -12,7 +12,7 @@
 #include "octomap/keyframe_tracer.hpp"
 #include "octomap/tree_blocks.hpp"
 
-namespace planemap {
+namespace planemap::octomap {
 
 /// One rebuild of an OctoMap beside the tree in use, which grows on meanwhile: the blocks that the misplaced
 /// keyframes touched or touch now are built anew from all keyframes that see them. What moves after the start
@@ -40,21 +40,22 @@ class TreeRebuild {
     void note_frozen_aside(int id);
     /// Does the work of about one scan. `tree` is the one in use, `base` that of the frozen keyframes (null:
     /// there are none). Returns false when the new tree is complete.
-    bool advance(KeyframeTracer& tracer, const octomap::OcTree& tree, const octomap::OcTree* base,
+    bool advance(KeyframeTracer& tracer, const ::octomap::OcTree& tree, const ::octomap::OcTree* base,
                  const std::stop_token& stop = {});
 
     /// The new tree; inner nodes are not brought up to date. Null until the survey is through.
-    const std::unique_ptr<octomap::OcTree>& tree() const { return tree_; }
-    std::unique_ptr<octomap::OcTree> take_tree() { return std::move(tree_); }
+    const std::unique_ptr<::octomap::OcTree>& tree() const { return tree_; }
+    std::unique_ptr<::octomap::OcTree> take_tree() { return std::move(tree_); }
     /// The keyframes, ascending id; once the tree is complete, with the blocks that they touch in it.
     std::vector<Planned>& plan() { return plan_; }
     /// Scans inserted again so far.
     std::size_t reinserted() const { return reinserted_; }
 
   private:
-    void survey(Planned& planned, KeyframeTracer& tracer, const octomap::OcTree& tree,
+    void survey(Planned& planned, KeyframeTracer& tracer, const ::octomap::OcTree& tree,
                 const std::stop_token& stop);
-    void begin_tree(const octomap::OcTree& tree, const octomap::OcTree* base, const std::stop_token& stop);
+    void begin_tree(const ::octomap::OcTree& tree, const ::octomap::OcTree* base,
+                    const std::stop_token& stop);
     bool is_touched(const Planned& planned) const;
     void insert_again(Planned& planned, KeyframeTracer& tracer, const std::stop_token& stop);
 
@@ -63,7 +64,7 @@ class TreeRebuild {
     bool everything_ = false;  ///< all are
     std::size_t surveyed_ = 0, inserted_ = 0;
     std::size_t reinserted_ = 0;
-    std::unique_ptr<octomap::OcTree> tree_;  ///< null while the dirty blocks are being found
+    std::unique_ptr<::octomap::OcTree> tree_;  ///< null while the dirty blocks are being found
 };
 
-}  // namespace planemap
+}  // namespace planemap::octomap

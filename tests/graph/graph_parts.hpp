@@ -26,9 +26,8 @@ struct GraphParts {
             topology.add_odometry(
                 odometry_tie({}, node - 1, node, keyframe.previous_from_camera, keyframe.covariance));
         }
-        keyframes.add(
-            {keyframe.id, keyframe.utime, keyframe.odom_from_camera, make_view(keyframe, 600)},
-            world_from_camera, node - 1);
+        keyframes.add({keyframe.id, keyframe.utime, keyframe.odom_from_camera, make_view(keyframe, 600)},
+                      world_from_camera, node - 1);
     }
 };
 

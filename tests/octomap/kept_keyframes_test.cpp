@@ -7,7 +7,7 @@
 
 #include "octomap/scenes.hpp"
 
-namespace planemap {
+namespace planemap::octomap {
 namespace {
 
 using test::pose;
@@ -126,4 +126,4 @@ TEST(KeptKeyframes, TakeTheBytesOfTheirScans) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::octomap

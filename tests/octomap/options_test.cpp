@@ -8,7 +8,7 @@
 
 #include "octomap/octomap_builder.hpp"
 
-namespace planemap {
+namespace planemap::octomap {
 namespace {
 
 using ::testing::HasSubstr;
@@ -27,4 +27,4 @@ TEST(OctomapOptions, NamesAllBadFields) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::octomap

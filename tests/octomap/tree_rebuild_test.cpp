@@ -5,7 +5,7 @@
 
 #include "octomap/scenes.hpp"
 
-namespace planemap {
+namespace planemap::octomap {
 namespace {
 
 using test::pose;
@@ -44,9 +44,9 @@ class TreeRebuildTest : public ::testing::Test {
     }
 
     /// A tree of all keyframes where they are now, over what `base` holds.
-    octomap::OcTree fresh(const octomap::OcTree* base = nullptr) {
-        octomap::OcTree tree =
-            base != nullptr ? octomap::OcTree(*base) : octomap::OcTree(tree_.getResolution());
+    ::octomap::OcTree fresh(const ::octomap::OcTree* base = nullptr) {
+        ::octomap::OcTree tree =
+            base != nullptr ? ::octomap::OcTree(*base) : ::octomap::OcTree(tree_.getResolution());
         for (const auto& [id, keyframe] : keyframes_.all()) {
             tracer_.trace(tree, *keyframe.scan, keyframe.world_from_camera);
             tracer_.apply(tree);
@@ -54,14 +54,14 @@ class TreeRebuildTest : public ::testing::Test {
         return up_to_date(std::move(tree));
     }
 
-    static octomap::OcTree up_to_date(octomap::OcTree tree) {
+    static ::octomap::OcTree up_to_date(::octomap::OcTree tree) {
         bring_up_to_date(tree);
         return tree;
     }
 
     KeptKeyframes keyframes_{OctomapOptions{}};
     KeyframeTracer tracer_{OctomapOptions{}};
-    octomap::OcTree tree_{OctomapOptions{}.resolution_m};
+    ::octomap::OcTree tree_{OctomapOptions{}.resolution_m};
 };
 
 TEST_F(TreeRebuildTest, BuildsAnewOnlyWhereSomethingMoved) {
@@ -102,7 +102,7 @@ TEST_F(TreeRebuildTest, WhatEnteredTheTreeMeanwhileIsInTheNewOneToo) {
 }
 
 TEST_F(TreeRebuildTest, GivenBlocksAreBuiltAnewFromTheFrozenKeyframes) {
-    octomap::OcTree base(tree_.getResolution());
+    ::octomap::OcTree base(tree_.getResolution());
     BlockSet dirty;
     const auto [id, frozen] = keyframes_.let_oldest_go();
     for (const Voxel& block : frozen.blocks) dirty.insert(block);
@@ -118,7 +118,7 @@ TEST_F(TreeRebuildTest, GivenBlocksAreBuiltAnewFromTheFrozenKeyframes) {
 TEST_F(TreeRebuildTest, ThePlanOutlivesTheKeyframesThatItNames) {
     move({0});
     TreeRebuild rebuild = begun();
-    const octomap::OcTree expected = fresh();
+    const ::octomap::OcTree expected = fresh();
     keyframes_.let_oldest_go();
     rebuild.note_frozen_aside(0);
     while (rebuild.advance(tracer_, tree_, nullptr)) continue;
@@ -130,4 +130,4 @@ TEST_F(TreeRebuildTest, ThePlanOutlivesTheKeyframesThatItNames) {
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::octomap

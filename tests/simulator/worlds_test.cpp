@@ -73,7 +73,7 @@ TEST(Worlds, RoomsAreClosedAndClutterIsNot) {
     }
 }
 
-TEST(octomap::Building, OneRoundIsAHundredMetres) {
+TEST(Building, OneRoundIsAHundredMetres) {
     const World building = make_building(1, kCoarse);
     double length = 0;
     for (std::size_t i = 0; i < building.tour.size(); ++i) {
