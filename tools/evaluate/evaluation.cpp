@@ -119,7 +119,7 @@ void EvaluationOptions::validate() const {
     errors.throw_if_any();
 }
 
-std::vector<PosePair> sensor::associate(const Trajectory& truth, const Trajectory& estimate,
+std::vector<PosePair> associate(const Trajectory& truth, const Trajectory& estimate,
                                         const EvaluationOptions& options) {
     const std::int64_t offset = microseconds(options.offset_s);
     const std::int64_t limit = microseconds(options.max_difference_s);
@@ -242,7 +242,7 @@ Evaluation evaluate(const Trajectory& truth_poses, const Trajectory& estimate_po
     options.validate();
     const Trajectory truth = without_repeated_stamps(truth_poses);
     const Trajectory estimate = without_repeated_stamps(estimate_poses);
-    const std::vector<PosePair> pairs = sensor::associate(truth, estimate, options);
+    const std::vector<PosePair> pairs = associate(truth, estimate, options);
 
     Evaluation result;
     result.truth_poses = truth.size();
