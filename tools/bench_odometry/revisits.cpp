@@ -97,7 +97,7 @@ std::optional<RevisitErrors> revisit_errors(const Trajectory& truth, const Traje
         std::stable_sort(trajectory->begin(), trajectory->end(),
                          [](const StampedPose& a, const StampedPose& b) { return a.utime < b.utime; });
     }
-    const auto absolute = absolute_error(references, visits, sensor::associate(references, visits, {}));
+    const auto absolute = absolute_error(references, visits, associate(references, visits, {}));
     const auto relative = relative_error(references, visits, {1, DeltaUnit::frames}, {});
     if (!absolute || !relative) return std::nullopt;
     errors.metres = absolute->metres;
