@@ -21,8 +21,6 @@ namespace planemap::graph {
 
 namespace {
 
-using Drift;
-using KeyframeNode;
 
 GraphOptions valid(const GraphOptions& options) {
     options.validate();

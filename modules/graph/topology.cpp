@@ -165,7 +165,7 @@ void Topology::weigh(std::size_t known, const std::vector<Pose>& poses, double k
 }
 
 void Topology::hand_over(const Tie& to_keeper, int gone, const std::vector<Pose>& poses) {
-    for (auto* ties : {&odometry_, &loops_, &gaps_}) hand_over(*ties, to_keeper, gone, poses);
+    for (auto* ties : {&odometry_, &loops_, &gaps_}) graph::hand_over(*ties, to_keeper, gone, poses);
     links_.assign(links_.size() - 1, {});
     for (const Tie& tie : odometry_) link(tie);
     for (const Tie& tie : gaps_) link(tie);
