@@ -3,7 +3,8 @@
 
 #include <algorithm>
 #include <iterator>
-#include <numbers>
+
+#include "core/angle.hpp"
 
 namespace planemap::octomap {
 
