@@ -22,7 +22,7 @@ int main(int argc, char** argv) {
         auto shell = std::make_unique<planemap::sensor::SensorShell>(
             bus, planemap::sensor::open_source(input, source), options);
         if (check) {
-            messages::require_shared(bus);
+            planemap::messages::require_shared(bus);
             std::exit(0);
         }
         return shell;

@@ -114,13 +114,13 @@ TruthCollector::TruthCollector(const simulator::World& world) {
     }
 }
 
-void TruthCollector::add(const simulator::View& view, const map::Sight& sight) {
+void TruthCollector::add(const simulator::View& view, const Sight& sight) {
     for (std::size_t i = 0; i < groups_.size(); ++i)
         look(groups_[i], static_cast<std::int16_t>(i), view, sight);
 }
 
 void TruthCollector::look(Group& group, std::int16_t index, const simulator::View& view,
-                          const map::Sight& sight) const {
+                          const Sight& sight) const {
     const simulator::View& v = view;
     const Pose camera_from_plane = view.world_from_camera.inverse(Eigen::Isometry) * group.world_from_plane;
     const Eigen::Vector3d eye = camera_from_plane.inverse(Eigen::Isometry).translation();  // on the plane
@@ -198,7 +198,7 @@ std::vector<TruePlane> TruthCollector::planes() const {
 std::optional<std::vector<TruePlane>> true_planes(const std::string& input, std::int64_t frames) {
     if (!input.starts_with("sim:")) return std::nullopt;
     const simulator::SimulatedSource source(simulator::parse_simulator_name(input));
-    map::Sight sight;
+    Sight sight;
     sight.min_m = source.camera().depth_min_m;
     sight.max_m = source.camera().depth_max_m;
     sight.max_angle_deg = simulator::DepthSensorOptions().grazing_from_deg;

@@ -15,7 +15,7 @@ using evaluation::PlaneRaster;
 using evaluation::TruePlane;
 
 /// What of a view counts as seen.
-struct map::Sight {
+struct Sight {
     double min_m = 0.5, max_m = 4.0;  ///< depth along the optical axis
     double max_angle_deg = 76;        ///< between ray and normal
 };
@@ -31,7 +31,7 @@ class TruthCollector {
 
     /// Adds what one exact view shows. Each cell of a plane is looked up in the view, so that no pixel is too
     /// small or too large for the raster.
-    void add(const simulator::View& view, const map::Sight& sight);
+    void add(const simulator::View& view, const Sight& sight);
 
     /// The planes seen so far, by plane and then from the largest part to the smallest.
     std::vector<TruePlane> planes() const;
@@ -44,7 +44,7 @@ class TruthCollector {
         std::vector<std::int16_t> surfaces;  ///< of each visible cell
     };
 
-    void look(Group& group, std::int16_t index, const simulator::View& view, const map::Sight& sight) const;
+    void look(Group& group, std::int16_t index, const simulator::View& view, const Sight& sight) const;
 
     std::vector<std::string> surface_names_;
     std::vector<std::int16_t> surface_of_rectangle_, group_of_rectangle_;

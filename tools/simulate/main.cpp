@@ -136,7 +136,7 @@ int main(int argc, char** argv) {
     flags.add_positional("world", world, "Simulator name, see above; default: sim:office", false);
     flags.add("o,output", output, "The log to write");
     flags.required();
-    flags.add(sensor::encoding_of(options));
+    flags.add(encoding_of(options));
     const int parsed = flags.parse(argc, argv);
     if (parsed >= 0) return parsed;
     options.speed = 0;  // as fast as it can be written

@@ -5,6 +5,8 @@
 
 #include <random>
 
+#include "core/trace.hpp"
+
 namespace planemap {
 namespace {
 
@@ -73,7 +75,7 @@ TEST(Bitmap, OpensAndClosesAsTheDefinitionSays) {
 TEST(Bitmap, TracesWhatTheMaskTraces) {
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
         const Twins twins = random_twins(seed, 0.05 * static_cast<double>(seed + 1));
-        const Outline bits = twins.bits.trace(), mask = trace(twins.mask);
+        const Outline bits = twins.bits.trace(), mask = test::trace(twins.mask);
         EXPECT_EQ(bits.rings.size(), mask.rings.size());
         EXPECT_EQ(bits.vertex_count(), mask.vertex_count());
         EXPECT_DOUBLE_EQ(area(bits), static_cast<double>(twins.bits.count()));
