@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
+#include "core/angle.hpp"
 #include "core/validation.hpp"
 
 namespace planemap {
@@ -56,7 +56,7 @@ bool OctomapBuilder::update(const KeyframeTrajectory& trajectory) {
         if (!now || !is_valid(*now)) continue;
         const Pose change = keyframe.world_from_camera.inverse(Eigen::Isometry) * *now;
         if (change.translation().norm() <= options_.moved_m &&
-            rotation_angle(change) <= options_.moved_deg * std::numbers::pi / 180) {
+            rotation_angle(change) <= radians(options_.moved_deg)) {
             continue;
         }
         keyframe.world_from_camera = *now;

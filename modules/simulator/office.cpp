@@ -2,8 +2,8 @@
 #include "simulator/office.hpp"
 
 #include <cmath>
-#include <numbers>
 
+#include "core/angle.hpp"
 #include "simulator/looks.hpp"
 
 namespace planemap::simulator {
@@ -20,7 +20,7 @@ constexpr double kCorridorFrom = 1.2, kCorridorTo = 5.4, kCorridorDepth = 1.6, k
 /// The walls of the room, with a corner cut off by a wall at 56 deg to the north wall.
 void add_room(WorldBuilder& office) {
     constexpr double kCut = 1.2;  // of the north wall
-    const double cut_east = kCut * std::tan(56 * std::numbers::pi / 180);
+    const double cut_east = kCut * std::tan(radians(56));
     const Vector3d corner(kRoomX - kCut, kRoomY, kRoomZ);
     const Vector3d end(kRoomX, kRoomY - cut_east, kRoomZ);
 
@@ -49,7 +49,7 @@ void add_room(WorldBuilder& office) {
 
 /// The east wall with a window in a niche, and a radiator below it.
 void add_window(WorldBuilder& office) {
-    const double north_end = kRoomY - 1.2 * std::tan(56 * std::numbers::pi / 180);
+    const double north_end = kRoomY - 1.2 * std::tan(radians(56));
     constexpr double kFrom = 1.2, kTo = 2.9, kLow = 0.95, kHigh = 2.15, kDepth = 0.18;
     constexpr double kWidth = kTo - kFrom, kHeight = kHigh - kLow, kPane = kRoomX + kDepth;
     const Hole window{north_end - kTo, kRoomZ - kHigh, north_end - kFrom, kRoomZ - kLow};
@@ -72,7 +72,7 @@ void add_doorway(WorldBuilder& office) {
     office.add_panel("door jamb east", {kDoorTo, 0, kDoorZ}, kSouth, kDown, kWallThickness, kDoorZ, kOak);
     office.add_panel("door lintel", {kDoorFrom, kNear, kDoorZ}, kEast, kNorth, kDoorWidth, kWallThickness,
                      kOak);
-    const double opened = 110 * std::numbers::pi / 180;
+    const double opened = radians(110);
     const Vector3d along(std::cos(opened), std::sin(opened), 0);
     office.add_box("door", {{kDoorFrom, 0.02, 0.01}, along}, {kDoorWidth, 0.04, kDoorZ - 0.02}, kBeech,
                    kBeech, {});
@@ -136,7 +136,7 @@ void add_monitor(WorldBuilder& office, const std::string& name, const Vector3d& 
 
 void add_desk(WorldBuilder& office) {
     add_table(office, "desk", {{0.8, 1.3, 0}, kNorth}, 1.6, 0.8, 0.75, kBeech);
-    const double turned = 75 * std::numbers::pi / 180;
+    const double turned = radians(75);
     add_monitor(office, "monitor", {0.32, 1.75, 0.75}, kNorth);
     add_monitor(office, "second monitor", {0.34, 2.42, 0.75}, {std::cos(turned), std::sin(turned), 0});
     office.add_box("keyboard", {{0.72, 1.6, 0.75}, kNorth}, {0.42, 0.14, 0.02}, kPlastic, kPlastic,
@@ -196,7 +196,7 @@ void add_boards(WorldBuilder& office) {
     constexpr double kHeight = 1.5, kThickness = 0.03;
     const Vector3d centre(5.15, 3.2, 0);
     const auto board = [&](const std::string& name, double angle_deg, double length, const Look& front) {
-        const double angle = angle_deg * std::numbers::pi / 180;
+        const double angle = radians(angle_deg);
         const Vector3d along(std::cos(angle), std::sin(angle), 0);
         const Vector3d corner = centre - 0.5 * length * along - 0.5 * kThickness * kUp.cross(along);
         office.add_box(name, {corner, along}, {length, kThickness, kHeight},
@@ -207,7 +207,7 @@ void add_boards(WorldBuilder& office) {
     office.add_picture(0.55, 0.3, 0.28, 0.38, kPoster);
     board("crossing board", 25, 0.7, {Pattern::kCarpet, {0.35f, 0.42f, 0.55f}});
 
-    const double lean = 40 * std::numbers::pi / 180;
+    const double lean = radians(40);
     const Vector3d up(0, std::sin(lean), std::cos(lean));
     office.add_box("drawing board", {{3.1, 4.1, 0.78}, kEast, up}, {1.1, 0.03, 0.85}, kBeech, kBeech, {});
     office.add_picture(0.15, 0.15, 0.6, 0.5, kPoster);

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "core/angle.hpp"
 #include "simulator/random.hpp"
 
 namespace planemap::simulator {
@@ -14,8 +15,6 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 namespace {
-
-constexpr double kRadians = std::numbers::pi / 180;
 
 /// Camera axes (columns: right, down, forward) for a gaze in a world with z up.
 Matrix3d looking(const Vector3d& gaze) {
@@ -41,7 +40,7 @@ class Tour {
             const double turned = std::atan2(gaze.cross(gaze_before).norm(), gaze.dot(gaze_before));
             times_.push_back(times_.back() +
                              std::hypot((next.position - previous.position).norm() / options.speed_m_s,
-                                        turned / (options.turn_deg_s * kRadians)));
+                                        turned / (radians(options.turn_deg_s))));
             previous = next;
         }
     }
@@ -126,7 +125,7 @@ Trajectory make_hand_path(const std::vector<Waypoint>& waypoints, double duratio
         const Waypoint point = tour.after(seconds);
         Twist shake = tremor.at(seconds);
         shake.head<3>() *= options.tremor_m;
-        shake.tail<3>() *= options.tremor_deg * kRadians;
+        shake.tail<3>() *= radians(options.tremor_deg);
         Pose smooth = Pose::Identity();
         smooth.linear() = looking(point.target - point.position);
         smooth.translation() = point.position;
@@ -136,7 +135,7 @@ Trajectory make_hand_path(const std::vector<Waypoint>& waypoints, double duratio
 }
 
 std::vector<Waypoint> wander(const std::vector<Waypoint>& places, int visits, std::uint64_t seed) {
-    constexpr double kStep_m = 0.4, kTurn = 30 * kRadians;
+    constexpr double kStep_m = 0.4, kTurn = radians(30);
     constexpr int kStand = 3;  // a spline goes through a point that is given three times
     std::vector<Waypoint> walk;
     std::size_t here = mix(seed, 29) % places.size();
@@ -183,7 +182,7 @@ Trajectory fit_path(const Trajectory& recorded, const World& world) {
     Pose best = Pose::Identity();
     for (int turn = 0; turn < 12; ++turn) {
         Pose candidate = Pose::Identity();
-        candidate.linear() = Eigen::AngleAxisd(turn * 30 * kRadians, Vector3d::UnitZ()).toRotationMatrix();
+        candidate.linear() = Eigen::AngleAxisd(radians(turn * 30), Vector3d::UnitZ()).toRotationMatrix();
         Vector3d low = Vector3d::Constant(std::numeric_limits<double>::infinity()), high = -low;
         for (const Vector3d& p : samples) {
             low = low.cwiseMin(candidate.linear() * p);

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "core/angle.hpp"
 #include "core/validation.hpp"
 
 namespace planemap::simulator {
@@ -79,8 +79,8 @@ class DepthReader {
                        static_cast<float>(options.sigma.quadratic_per_m),
                        static_cast<float>(options.sigma.offset_m)},
           disparity_at_1m_(static_cast<float>(view.camera.fx * options.baseline_m)),
-          cos_from_(static_cast<float>(std::cos(options.grazing_from_deg * std::numbers::pi / 180))),
-          cos_to_(static_cast<float>(std::cos(options.grazing_to_deg * std::numbers::pi / 180))) {
+          cos_from_(static_cast<float>(std::cos(radians(options.grazing_from_deg)))),
+          cos_to_(static_cast<float>(std::cos(radians(options.grazing_to_deg)))) {
         const Pose camera_from_world = view.world_from_camera.inverse();
         for (const Rectangle& rectangle : world.rectangles) {
             const Plane plane =
