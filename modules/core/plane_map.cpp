@@ -3,15 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <stdexcept>
-#include <string>
 
 namespace planemap {
 
 namespace {
-
-constexpr double kMaxSteps = 32767;
 
 /// The axes that MapPlane::angle counts from: z the normal, x the first of world x, y that is not nearly
 /// along it, made square to it.
@@ -46,28 +41,13 @@ const char* label_name(PlaneLabel label) {
 }
 
 MapOutline::MapOutline(const Outline& outline) {
-    double largest = 0;
-    std::size_t size = 0;
-    for (const Ring& ring : outline.rings) {
-        if (ring.size() > static_cast<std::size_t>(kMaxSteps))
-            throw std::length_error("an outline ring of " + std::to_string(ring.size()) + " vertices");
-        size += 1 + 2 * ring.size();
-        for (const auto& v : ring) largest = std::max(largest, v.cwiseAbs().maxCoeff());
-    }
-    unit = static_cast<float>(std::max(kUnit_m, largest / kMaxSteps));
-    packed.reserve(size);
-    const auto steps = [&](double metres) {
-        return static_cast<std::int16_t>(std::clamp(std::round(metres / unit), -kMaxSteps, kMaxSteps));
-    };
-    for (const Ring& ring : outline.rings) {
-        packed.push_back(static_cast<std::int16_t>(ring.size()));
-        for (const auto& v : ring) packed.insert(packed.end(), {steps(v.x()), steps(v.y())});
-    }
+    unit = pack(outline, packed);
 }
 
 std::size_t MapOutline::ring_count() const {
     std::size_t count = 0;
-    for (std::size_t i = 0; i < packed.size(); i += 1 + 2 * static_cast<std::size_t>(packed[i])) ++count;
+    for_each_packed(
+        packed, [&](std::size_t) { ++count; }, [](std::int16_t, std::int16_t) {});
     return count;
 }
 
@@ -78,13 +58,11 @@ std::size_t MapOutline::vertex_count() const {
 Outline MapOutline::rings() const {
     Outline outline;
     outline.rings.reserve(ring_count());
-    for (std::size_t i = 0; i < packed.size();) {
-        Ring& ring = outline.rings.emplace_back(static_cast<std::size_t>(packed[i++]));
-        for (Eigen::Vector2d& v : ring) {
-            v = static_cast<double>(unit) * Eigen::Vector2d(packed[i], packed[i + 1]);
-            i += 2;
-        }
-    }
+    for_each_packed(
+        packed, [&](std::size_t size) { outline.rings.emplace_back().reserve(size); },
+        [&](std::int16_t x, std::int16_t y) {
+            outline.rings.back().emplace_back(static_cast<double>(unit) * Eigen::Vector2d(x, y));
+        });
     return outline;
 }
 

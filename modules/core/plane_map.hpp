@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/geometry/packed_outline.hpp"
 #include "core/region.hpp"
 
 namespace planemap {
@@ -24,15 +25,11 @@ const char* label_name(PlaneLabel label);
 
 /// An outline in whole steps: 4 bytes a vertex.
 struct MapOutline {
-    static constexpr double kUnit_m =
-        0.001;  ///< a step, for outlines that reach up to 32 m from their origin
-
     float unit = 0.001f;               ///< metres a step
-    std::vector<std::int16_t> packed;  ///< for each ring its number of vertices, then their x, y in steps
+    std::vector<std::int16_t> packed;  ///< see pack()
 
     MapOutline() = default;
-    /// Rounded to steps of 1 mm (an error of at most 0.71 mm), or coarser ones if the outline reaches further
-    /// than 32 m. Throws std::length_error for a ring of over 32767 vertices.
+    /// As pack() rounds it, with its errors.
     explicit MapOutline(const Outline& outline);
 
     bool empty() const { return packed.empty(); }

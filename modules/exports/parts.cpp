@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/angle.hpp"
 #include "exports/triangulation.hpp"
 
 namespace planemap::exports {
@@ -88,8 +89,7 @@ Eigen::Matrix3d level_from_world(const PlaneMap& map, const Eigen::Vector3d& up)
     for (const Eigen::Vector2d& wall : walls) {
         Eigen::Vector2d sum(0, 0);
         for (const Eigen::Vector2d& other : walls)
-            if (other.dot(wall) > std::cos(40 * std::numbers::pi / 180) * other.norm() * wall.norm())
-                sum += other;
+            if (other.dot(wall) > std::cos(radians(40)) * other.norm() * wall.norm()) sum += other;
         if (sum.norm() > most.norm()) most = sum;
     }
     const double turn = std::atan2(most.y(), most.x()) / 4;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/angle.hpp"
 #include "exports/exports.hpp"
 #include "exports/parts.hpp"
 #include "exports/svg.hpp"
@@ -27,7 +28,7 @@ struct PerspectiveCamera {
 
 PerspectiveCamera looking_from(double azimuth, const Eigen::Matrix3d& level, const Eigen::Vector3d& centre,
                                double radius) {
-    constexpr double kElevation = 50 * std::numbers::pi / 180;
+    constexpr double kElevation = radians(50);
     const Eigen::Vector3d in_level(std::cos(kElevation) * std::cos(azimuth),
                                    std::cos(kElevation) * std::sin(azimuth), std::sin(kElevation));
     PerspectiveCamera camera;

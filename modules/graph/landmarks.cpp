@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "core/angle.hpp"
 #include "graph/node_index.hpp"
 
 namespace planemap::graph {
@@ -47,9 +47,10 @@ Eigen::Vector4d sighting_error(const Sighting& sighting, const Pose& world_from_
     return error;
 }
 
+/// Not map/merging's rules: a wrong tie bends the whole trajectory, so it asks for less angle, and for the
+/// distance where the sighting's points are.
 bool Landmarks::fits(const Candidate& region, const Landmark& landmark) const {
-    return angle_between(region.plane.normal, landmark.plane.normal) <
-               options_.max_angle_deg * std::numbers::pi / 180 &&
+    return angle_between(region.plane.normal, landmark.plane.normal) < radians(options_.max_angle_deg) &&
            rms_distance(region.points, landmark.plane) < options_.max_distance_m &&
            distance(region.box, landmark.box) < options_.max_gap_m;
 }

@@ -7,10 +7,10 @@
 #include <array>
 #include <bitset>
 #include <cmath>
-#include <numbers>
 #include <random>
 #include <utility>
 
+#include "core/angle.hpp"
 #include "core/geometry/rigid_fit.hpp"
 #include "graph/comparison.hpp"
 
@@ -18,7 +18,7 @@ namespace planemap::graph {
 
 namespace {
 
-constexpr double kPlaneAngle = 10 * std::numbers::pi / 180;  // as the map merges planes (paper section 2.3)
+constexpr double kPlaneAngle = radians(10);  // as the map merges planes (paper section 2.3)
 
 /// One point seen by both.
 struct PointPair {
@@ -159,7 +159,8 @@ void add_points(const std::vector<PointPair>& pairs, const Pose& a_from_b, Norma
     }
 }
 
-/// Two regions that are one plane.
+/// Two regions that are one plane for all that a pose not yet refined can tell: cheaper and looser in
+/// distance than map/merging's rules, and asked again after each step.
 struct PlanePair {
     const PlanarRegion *a, *b;
 };

@@ -5,8 +5,6 @@
 #include <bit>
 #include <cmath>
 
-#include "core/geometry/bitmap.hpp"
-
 namespace planemap::map {
 
 namespace {
@@ -20,21 +18,7 @@ Outline simplified_without_crossings(const Outline& outline, double tolerance) {
     return outline;
 }
 
-/// Bits that are set after an odd number of set bits, themselves included: prefix parity.
-std::uint64_t parity_up_to(std::uint64_t bits) {
-    for (const int shift : {1, 2, 4, 8, 16, 32}) bits ^= bits << shift;
-    return bits;
-}
-
 }  // namespace
-
-void FlatPolygon::assign(const Outline& outline) {
-    clear();
-    for (const Ring& ring : outline.rings) {
-        vertices.insert(vertices.end(), ring.begin(), ring.end());
-        ring_ends.push_back(vertices.size());
-    }
-}
 
 /// Room for the words [word_from, word_to) of the rows [y_from, y_to).
 void EvidenceGrid::grow(int word_from, int y_from, int word_to, int y_to) {
@@ -73,40 +57,18 @@ int EvidenceGrid::add(const FlatPolygon& polygon, int strength) {
     const int word_from = cell(low.x()) >> 6, word_to = ((cell(high.x()) + 1) >> 6) + 1;
     grow(word_from, y_from, word_to, y_to);
 
-    // Each edge flips, in every row whose centre line it crosses, all cells to its right: what is flipped an
-    // odd number of times is inside.
-    const int words = word_to - word_from, rows = y_to - y_from;
-    flips_.assign(static_cast<std::size_t>(words) * static_cast<std::size_t>(rows), 0);
+    inside_.reset(word_from, y_from, word_to - word_from, y_to - y_from);
     const Eigen::Vector2d first_centre(64.0 * word_from + 0.5, y_from + 0.5);
-    std::size_t begin = 0;
-    for (const std::size_t end : polygon.ring_ends) {
-        for (std::size_t i = begin, j = end - 1; i < end; j = i++) {
-            Eigen::Vector2d a = per_cell * polygon.vertices[j] - first_centre;
-            Eigen::Vector2d b = per_cell * polygon.vertices[i] - first_centre;
-            if (a.y() > b.y()) std::swap(a, b);
-            const int from = std::max(0, static_cast<int>(std::ceil(a.y())));
-            const int to = std::min(rows, static_cast<int>(std::ceil(b.y())));
-            if (from >= to) continue;
-            const double slope = (b.x() - a.x()) / (b.y() - a.y());
-            double x = a.x() + (from - a.y()) * slope;
-            for (int y = from; y < to; ++y, x += slope) {
-                const int at = std::clamp(static_cast<int>(std::ceil(x)), 0, 64 * words - 1);
-                flips_[static_cast<std::size_t>(y * words + (at >> 6))] ^= std::uint64_t{1} << (at & 63);
-            }
-        }
-        begin = end;
-    }
+    inside_.draw(polygon,
+                 [&](const Eigen::Vector2d& v) -> Eigen::Vector2d { return per_cell * v - first_centre; });
     int fresh = 0;
-    for (int y = 0; y < rows; ++y) {
-        const std::uint64_t* flips = flips_.data() + static_cast<std::ptrdiff_t>(y) * words;
-        EvidenceCells* cells = row(y_from + y) + (word_from - word0_);
-        std::uint64_t carried = 0;  // all ones while inside
-        for (int w = 0; w < words; ++w) {
-            const std::uint64_t inside = parity_up_to(flips[w]) ^ carried;
-            carried = (inside >> 63) != 0 ? ~std::uint64_t{0} : 0;
-            if (inside == 0) continue;
-            fresh += std::popcount(inside & ~cells[w].at_least(1));
-            cells[w].add_hits(inside, strength);
+    for (int y = y_from; y < y_to; ++y) {
+        const std::uint64_t* inside = inside_.row(y);
+        EvidenceCells* cells = row(y) + (word_from - word0_);
+        for (int w = 0; w < inside_.words(); ++w) {
+            if (inside[w] == 0) continue;
+            fresh += std::popcount(inside[w] & ~cells[w].at_least(1));
+            cells[w].add_hits(inside[w], strength);
         }
     }
     return fresh;

@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/geometry/bitmap.hpp"
 #include "core/geometry/crossing.hpp"
+#include "core/geometry/flat_polygon.hpp"
 #include "core/geometry/outline.hpp"
 #include "core/geometry/pose.hpp"
 #include "map/evidence_cells.hpp"
@@ -16,18 +18,6 @@ struct OutlineOptions {
     int min_hits = 1;           ///< evidence a cell needs to be part of the shape, 1 to 15
     double min_ring_m2 = 0.01;  ///< smaller parts and smaller holes are left out
     double tolerance_m = 0.03;  ///< no traced vertex is further than this from the simplified outline
-};
-
-/// A polygon with holes for drawing: the vertices of all rings one after the other. Even-odd rule.
-struct FlatPolygon {
-    std::vector<Eigen::Vector2d> vertices;
-    std::vector<std::size_t> ring_ends;  ///< past the last vertex of each ring
-
-    void clear() {
-        vertices.clear();
-        ring_ends.clear();
-    }
-    void assign(const Outline& outline);
 };
 
 /// Where a plane has been seen (hits) and where something beyond it was (misses): a raster in the plane that
@@ -84,7 +74,7 @@ class EvidenceGrid {
     double cell_m_ = 0.025;
     int word0_ = 0, y0_ = 0, words_ = 0, rows_ = 0;  ///< stored: word w holds the cells x = 64 w to 64 w + 63
     std::vector<EvidenceCells> cells_;
-    std::vector<std::uint64_t> flips_;  ///< scratch of add()
+    Bitmap inside_;  ///< scratch of add()
 };
 
 }  // namespace planemap::map

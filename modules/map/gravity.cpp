@@ -4,8 +4,9 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
+
+#include "core/angle.hpp"
 
 namespace planemap::map {
 
@@ -120,14 +121,13 @@ Eigen::Vector3d refined(Eigen::Vector3d up, const std::vector<Evidence>& evidenc
 
 std::optional<Eigen::Vector3d> find_up(std::span<const MapPlane> planes,
                                        std::span<const Pose> world_from_camera, const GravityRules& rules) {
-    constexpr double kRadians = std::numbers::pi / 180;
     const std::vector<Evidence> evidence = evidence_of(planes);
     const std::optional<Handling> handling = handling_of(world_from_camera);
     if (evidence.empty() || !handling) return std::nullopt;
 
-    const double sin2_tolerance = std::pow(std::sin(rules.tolerance_deg * kRadians), 2);
+    const double sin2_tolerance = std::pow(std::sin(radians(rules.tolerance_deg)), 2);
     const std::vector<Eigen::Vector3d> candidates =
-        answers(evidence, *handling, std::cos(rules.held_deg * kRadians));
+        answers(evidence, *handling, std::cos(radians(rules.held_deg)));
     std::vector<double> scores;
     for (const Eigen::Vector3d& u : candidates) {
         double score = handling->fit(u);
@@ -139,7 +139,7 @@ std::optional<Eigen::Vector3d> find_up(std::span<const MapPlane> planes,
     if (best_score == scores.end()) return std::nullopt;
     const Eigen::Vector3d best = candidates[static_cast<std::size_t>(best_score - scores.begin())];
     for (std::size_t i = 0; i < candidates.size(); ++i) {
-        const bool rival = candidates[i].dot(best) < std::cos(rules.rival_deg * kRadians);
+        const bool rival = candidates[i].dot(best) < std::cos(radians(rules.rival_deg));
         if (rival && scores[i] > *best_score - rules.margin) return std::nullopt;
     }
     return refined(best, evidence, *handling, sin2_tolerance);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "map/intersections.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,22 +9,10 @@ namespace planemap::map {
 
 namespace {
 
-struct Line {
-    Eigen::Vector3d origin, direction;
-};
-
 struct Interval {
     double low, high;
 };
 using Intervals = std::vector<Interval>;
-
-std::optional<Line> common_line(const Plane& a, const Plane& b, double min_angle_rad) {
-    const Eigen::Vector3d direction = a.normal.cross(b.normal);
-    if (direction.norm() < std::sin(min_angle_rad)) return std::nullopt;
-    Eigen::Matrix3d rows;
-    rows << a.normal.transpose(), b.normal.transpose(), direction.normalized().transpose();
-    return Line{rows.inverse() * Eigen::Vector3d(-a.d, -b.d, 0), direction.normalized()};
-}
 
 /// Smallest distance from a plane to a box.
 double distance_to(const Plane& plane, const Box& box) {
@@ -56,18 +43,16 @@ Intervals along_line(const PlaneShape& shape, const Line& line, double gap) {
     const Eigen::Vector2d across(-along.y(), along.x());
     constexpr std::size_t kCuts = 7;  // parallel to the line, the middle one on it
     std::array<std::vector<double>, kCuts> crossings;
-    for (const Ring& ring : shape.outline.rings) {
-        for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
-            const double a = across.dot(ring[j] - origin), b = across.dot(ring[i] - origin);
-            if (std::min(a, b) > gap || std::max(a, b) < -gap) continue;
-            for (std::size_t cut = 0; cut < kCuts; ++cut) {
-                const double height = gap * (2.0 * static_cast<double>(cut) / (kCuts - 1) - 1);
-                if ((a > height) == (b > height)) continue;
-                const Eigen::Vector2d at = ring[j] + (height - a) / (b - a) * (ring[i] - ring[j]);
-                crossings[cut].push_back(along.dot(at - origin));
-            }
+    for_each_edge(shape.outline, [&](const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
+        const double a = across.dot(from - origin), b = across.dot(to - origin);
+        if (std::min(a, b) > gap || std::max(a, b) < -gap) return;
+        for (std::size_t cut = 0; cut < kCuts; ++cut) {
+            const double height = gap * (2.0 * static_cast<double>(cut) / (kCuts - 1) - 1);
+            if ((a > height) == (b > height)) continue;
+            const Eigen::Vector2d at = from + (height - a) / (b - a) * (to - from);
+            crossings[cut].push_back(along.dot(at - origin));
         }
-    }
+    });
     Intervals intervals;
     for (std::vector<double>& ends : crossings) {
         std::sort(ends.begin(), ends.end());
@@ -109,7 +94,7 @@ std::vector<IntersectionLine> intersection_lines(const PlaneShape& a, const Plan
     const Box &box_a = first.box, &box_b = second.box;
     // The common line lies in both planes, so neither box may be further from the other's plane.
     if (distance_to(plane_a, box_b) > rules.gap_m || distance_to(plane_b, box_a) > rules.gap_m) return {};
-    const auto line = common_line(plane_a, plane_b, rules.min_angle_rad);
+    const auto line = common_line(plane_a, plane_b, Eigen::Vector3d::Zero(), std::sin(rules.min_angle_rad));
     if (!line) return {};
     const Intervals on_first = along_line(first, *line, rules.gap_m);
     if (on_first.empty()) return {};
@@ -126,16 +111,12 @@ std::vector<IntersectionLine> intersection_lines(const PlaneShape& a, const Plan
 
 std::optional<IntersectionPoint> intersection_point(const PlaneShape& a, const PlaneShape& b,
                                                     const PlaneShape& c, const AdjacencyRules& rules) {
-    Eigen::Matrix3d rows;
-    const Plane &plane_a = a.plane, &plane_b = b.plane, &plane_c = c.plane;
-    rows << plane_a.normal.transpose(), plane_b.normal.transpose(), plane_c.normal.transpose();
-    // The volume spanned by the normals: small when the three planes nearly share a line.
-    if (std::abs(rows.determinant()) < std::pow(std::sin(rules.min_angle_rad), 2)) return std::nullopt;
-    const Eigen::Vector3d position = rows.inverse() * -Eigen::Vector3d(plane_a.d, plane_b.d, plane_c.d);
+    const auto position = common_point(a.plane, b.plane, c.plane, std::pow(std::sin(rules.min_angle_rad), 2));
+    if (!position) return std::nullopt;
     IntersectionPoint point;
-    point.position = position.cast<float>();
+    point.position = position->cast<float>();
     for (const PlaneShape* shape : {&a, &b, &c}) {
-        const Eigen::Vector3d p = shape->box.frame_from_box.inverse(Eigen::Isometry) * position;
+        const Eigen::Vector3d p = shape->box.frame_from_box.inverse(Eigen::Isometry) * *position;
         if (distance(shape->outline, p.head<2>()) > rules.gap_m) return std::nullopt;
     }
     point.planes = {a.id, b.id, c.id};

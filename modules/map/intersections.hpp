@@ -5,15 +5,16 @@
 #include <optional>
 #include <vector>
 
+#include "core/geometry/plane_intersection.hpp"
 #include "core/plane_map.hpp"
 
 namespace planemap::map {
 
 /// When two planes count as adjacent.
 struct AdjacencyRules {
-    double gap_m = 0.15;            ///< each outline comes this near to the common line
-    double min_angle_rad = 0.2618;  ///< flatter pairs have no well-defined line
-    double min_length_m = 0.15;     ///< shorter pieces of the line are left out
+    double gap_m = 0.15;                   ///< each outline comes this near to the common line
+    double min_angle_rad = kParallel_rad;  ///< flatter pairs have no well-defined line
+    double min_length_m = 0.15;            ///< shorter pieces of the line are left out
 };
 
 /// A plane of the map unpacked for cutting it with others.

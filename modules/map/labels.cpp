@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <vector>
+
+#include "core/angle.hpp"
 
 namespace planemap::map {
 
@@ -72,8 +73,7 @@ class Labeller {
     void add(MapPlane& plane) {
         const bool is_plane = std::abs(plane.normal.norm() - 1) < 1e-3f && plane.center.allFinite();
         if (!is_plane || !std::isfinite(plane.area) || !std::isfinite(plane.angle)) return;
-        constexpr double kRadians = std::numbers::pi / 180;
-        const double tolerance = rules_.gravity.tolerance_deg * kRadians;
+        const double tolerance = radians(rules_.gravity.tolerance_deg);
         const Pose world_from_plane = plane.world_from_plane();
         const Eigen::Vector3d slope = world_from_plane.linear().transpose() * up_;
         Standing s;
@@ -94,15 +94,13 @@ class Labeller {
         const Eigen::Vector2d per_step = static_cast<double>(outline.unit) * slope.head<2>();
         s.low = outline.empty() ? s.height : kInfinity;
         s.high = outline.empty() ? s.height : -kInfinity;
-        for (std::size_t i = 0; i < outline.packed.size();) {
-            const std::size_t end = i + 1 + 2 * static_cast<std::size_t>(outline.packed[i]);
-            for (++i; i < end; i += 2) {
-                const double height =
-                    s.height + per_step.x() * outline.packed[i] + per_step.y() * outline.packed[i + 1];
+        for_each_packed(
+            outline.packed, [](std::size_t) {},
+            [&](std::int16_t x, std::int16_t y) {
+                const double height = s.height + per_step.x() * x + per_step.y() * y;
                 s.low = std::min(s.low, height);
                 s.high = std::max(s.high, height);
-            }
-        }
+            });
     }
 
     /// Share of the cameras between two heights.

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "map/map.hpp"
 
-#include <numbers>
 #include <utility>
 
+#include "core/angle.hpp"
 #include "map/hand_over.hpp"
 #include "map/starting_planes.hpp"
 
@@ -11,7 +11,6 @@ namespace planemap::map {
 
 namespace {
 
-constexpr double kRadPerDeg = std::numbers::pi / 180;
 constexpr std::size_t kMaxWaiting = 4096;
 /// Keyframes near one that goes, which take over what it saw.
 constexpr std::size_t kHeirs = 8;
@@ -29,7 +28,7 @@ DerivationRules derivation_rules(const MapOptions& options) {
 }
 
 AdjacencyRules adjacency_rules(const MapOptions& options) {
-    return {options.adjacency_gap_m, options.adjacency_angle_deg * kRadPerDeg, options.adjacency_length_m};
+    return {options.adjacency_gap_m, radians(options.adjacency_angle_deg), options.adjacency_length_m};
 }
 
 }  // namespace
@@ -74,7 +73,7 @@ void PlaneMapper::add(const Keyframe& keyframe, const Pose& world_from_camera) {
 void PlaneMapper::update(const KeyframeTrajectory& trajectory) {
     hand_over_replaced(trajectory);
     const KeyframeStore::Motion motion =
-        keyframes_.update(trajectory.keyframes, {options_.moved_m, options_.moved_deg * kRadPerDeg}, losses_);
+        keyframes_.update(trajectory.keyframes, {options_.moved_m, radians(options_.moved_deg)}, losses_);
     settled_ = settled_ && !motion.any;
     derived_.set_revision(trajectory.revision);
     if (motion.of_note) {

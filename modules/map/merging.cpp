@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/geometry/segment.hpp"
+
 namespace planemap::map {
 
 namespace {
@@ -64,10 +66,7 @@ NearestPoints nearest_points(const Corners& a, const Corners& b) {
         for (std::size_t k = 0; k < corners->count; ++k) {
             const Eigen::Vector2d& p = corners->p[k];
             for (std::size_t i = 0, j = edges->count - 1; i < edges->count; j = i++) {
-                const Eigen::Vector2d from = edges->p[j], along = edges->p[i] - from;
-                const double length2 = along.squaredNorm();
-                const double s = length2 > 0 ? std::clamp((p - from).dot(along) / length2, 0.0, 1.0) : 0.0;
-                const Eigen::Vector2d q = from + s * along;
+                const Eigen::Vector2d q = nearest_on_segment(p, edges->p[j], edges->p[i]);
                 if ((p - q).norm() < best.gap) best = {(p - q).norm(), 0.5 * (p + q)};
             }
         }

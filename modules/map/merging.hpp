@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// When two planar regions are the same plane of the world: the rules of paper section 2.3.
+// When two planar regions are the same plane of the world: the rules of paper section 2.3. Others ask what
+// looks alike and is not: segmentation/merging whether two parts of one image fit a common plane within the
+// noise, odometry which region of the keyframe a point lies on, graph/landmarks and graph/verification what
+// may hold two poses together, map/hand_over which of regions known to be one plane covers another.
 #pragma once
 
 #include <optional>

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <map>
-#include <numbers>
 #include <utility>
 
+#include "core/angle.hpp"
 #include "map/rebuild.hpp"
 
 namespace planemap::map {
@@ -13,8 +13,7 @@ namespace planemap::map {
 namespace {
 
 MergeRules merge_rules(const MapOptions& options) {
-    constexpr double kRadPerDeg = std::numbers::pi / 180;
-    return {options.merge_angle_deg * kRadPerDeg, options.merge_distance_m, options.merge_gap_m};
+    return {radians(options.merge_angle_deg), options.merge_distance_m, options.merge_gap_m};
 }
 
 }  // namespace

@@ -5,20 +5,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/geometry/plane_intersection.hpp"
+#include "core/geometry/segment.hpp"
+
 namespace planemap::map {
 
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kParallel_rad = 15 * std::numbers::pi / 180;
-
-/// Calls edge(from, to) for every edge of the outline.
-template <typename Edge>
-void for_each_edge(const Outline& outline, const Edge& edge) {
-    for (const Ring& ring : outline.rings) {
-        for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) edge(ring[j], ring[i]);
-    }
-}
 
 /// The point of the outline's area that is nearest to p.
 Eigen::Vector2d nearest_in(const Outline& outline, const Eigen::Vector2d& p) {
@@ -26,10 +20,7 @@ Eigen::Vector2d nearest_in(const Outline& outline, const Eigen::Vector2d& p) {
     Eigen::Vector2d nearest = Eigen::Vector2d::Zero();
     double nearest2 = kInfinity;
     for_each_edge(outline, [&](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-        const Eigen::Vector2d ab = b - a;
-        const double length2 = ab.squaredNorm();
-        const Eigen::Vector2d q =
-            a + (length2 > 0 ? std::clamp((p - a).dot(ab) / length2, 0.0, 1.0) : 0.0) * ab;
+        const Eigen::Vector2d q = nearest_on_segment(p, a, b);
         if ((q - p).squaredNorm() < nearest2) nearest2 = (q - p).squaredNorm(), nearest = q;
     });
     return nearest;

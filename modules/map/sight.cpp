@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/geometry/bitmap.hpp"
+
 namespace planemap::map {
 
 namespace {
@@ -13,22 +15,7 @@ namespace {
 constexpr double kMostAside = 4;
 constexpr double kLeastDepth_m = 0.05;
 
-/// Which corners of the cells lie inside a polygon given in cells (even-odd rule), row by row.
-constexpr int kColumns = Sight::kWidth + 1, kRows = Sight::kHeight + 1;
-using Corners = std::array<std::uint8_t, static_cast<std::size_t>(kColumns) * kRows>;
-
-/// Flips the corners to the left of an edge, in every row that it crosses.
-void flip(Corners& inside, Eigen::Vector2d a, Eigen::Vector2d b) {
-    if (a.y() > b.y()) std::swap(a, b);
-    const int from = std::max(0, static_cast<int>(std::ceil(std::max(a.y(), -1.0))));
-    const int to = std::min(kRows, static_cast<int>(std::ceil(std::min(b.y(), kRows + 1.0))));
-    for (int y = from; y < to; ++y) {
-        const double x = a.x() + (y - a.y()) * (b.x() - a.x()) / (b.y() - a.y());
-        const double until = std::clamp(std::ceil(x), 0.0, static_cast<double>(kColumns));
-        for (int column = 0; column < static_cast<int>(until); ++column)
-            inside[static_cast<std::size_t>(y * kColumns + column)] ^= 1;
-    }
-}
+constexpr int kColumns = Sight::kWidth + 1, kRows = Sight::kHeight + 1;  // of the cells' corners
 
 }  // namespace
 
@@ -55,19 +42,14 @@ Sight::Directions Sight::directions_of(const std::vector<PlanarRegion>& regions)
 /// Gives a region the cells that it covers as a whole, where it is nearer than those before.
 void Sight::fill(std::uint8_t region, const Plane& plane, const FlatPolygon& directions,
                  std::array<double, kWidth * kHeight>& nearest) {
-    Corners inside{};
-    std::size_t begin = 0;
-    for (const std::size_t end : directions.ring_ends) {
-        for (std::size_t k = begin, j = end - 1; k < end; j = k++)
-            flip(inside, (directions.vertices[j] - low_).cwiseProduct(per_cell_),
-                 (directions.vertices[k] - low_).cwiseProduct(per_cell_));
-        begin = end;
-    }
+    Bitmap corners(0, 0, (kColumns + 63) / 64, kRows);
+    corners.draw(directions, [&](const Eigen::Vector2d& v) -> Eigen::Vector2d {
+        return (v - low_).cwiseProduct(per_cell_);
+    });
     for (int y = 0; y < kHeight; ++y) {
         for (int x = 0; x < kWidth; ++x) {
-            const auto corner = static_cast<std::size_t>(y * kColumns + x);
-            if ((inside[corner] & inside[corner + 1] & inside[corner + kColumns] &
-                 inside[corner + kColumns + 1]) == 0)
+            if (!(corners.at(x, y) && corners.at(x + 1, y) && corners.at(x, y + 1) &&
+                  corners.at(x + 1, y + 1)))
                 continue;
             const Eigen::Vector3d ray(low_.x() + (x + 0.5) / per_cell_.x(),
                                       low_.y() + (y + 0.5) / per_cell_.y(), 1);

@@ -3,12 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+
+#include "core/geometry/packed_outline.hpp"
 
 namespace planemap::map {
 
 namespace {
-
-constexpr double kStep_m = 0.001, kMaxSteps = 32767;
 
 /// The region's frame with z exactly its plane's normal and the origin on the plane, whatever its box says.
 Pose level_box(const PlanarRegion& region) {
@@ -18,27 +19,12 @@ Pose level_box(const PlanarRegion& region) {
     return frame;
 }
 
-void pack(const Outline& outline, const Pose& box_from_outline, float& unit,
-          std::vector<std::int16_t>& packed) {
-    std::vector<Eigen::Vector2d> vertices;
-    double largest = 0;
-    for (const Ring& ring : outline.rings) {
-        for (const Eigen::Vector2d& v : ring) {
-            vertices.emplace_back((box_from_outline * Eigen::Vector3d(v.x(), v.y(), 0)).head<2>());
-            largest = std::max(largest, vertices.back().cwiseAbs().maxCoeff());
-        }
+/// Seen along the frame's z.
+Outline in_frame(const Pose& frame_from_outline, Outline outline) {
+    for (Ring& ring : outline.rings) {
+        for (Eigen::Vector2d& v : ring) v = (frame_from_outline * Eigen::Vector3d(v.x(), v.y(), 0)).head<2>();
     }
-    unit = static_cast<float>(std::max(kStep_m, largest / kMaxSteps));
-    const auto steps = [&](double metres) {
-        return static_cast<std::int16_t>(
-            std::clamp(std::round(metres / static_cast<double>(unit)), -kMaxSteps, kMaxSteps));
-    };
-    std::size_t next = 0;
-    for (const Ring& ring : outline.rings) {
-        packed.push_back(static_cast<std::int16_t>(ring.size()));
-        for (std::size_t i = 0; i < ring.size(); ++i, ++next)
-            packed.insert(packed.end(), {steps(vertices[next].x()), steps(vertices[next].y())});
-    }
+    return outline;
 }
 
 /// Moments in the camera frame, kept in the axes of the region's box.
@@ -68,8 +54,8 @@ StoredKeyframe stored(std::int64_t utime, const std::vector<PlanarRegion>& regio
         s.center = camera_from_box.translation().cast<float>();
         s.half_extents = region.box.half_extents.head<2>().cast<float>();
         s.first = static_cast<std::uint32_t>(keyframe.vertices.size());
-        pack(region.outline, camera_from_box.inverse(Eigen::Isometry) * region.box.frame_from_box, s.unit,
-             keyframe.vertices);
+        const Pose box_from_outline = camera_from_box.inverse(Eigen::Isometry) * region.box.frame_from_box;
+        s.unit = pack(in_frame(box_from_outline, region.outline), keyframe.vertices);
         s.last = static_cast<std::uint32_t>(keyframe.vertices.size());
     }
     keyframe.vertices.shrink_to_fit();
@@ -113,14 +99,13 @@ void outline_in(const Pose& a_from_box, const StoredRegion& region, const Stored
         return;
     }
     const Eigen::Matrix2d steps = static_cast<double>(region.unit) * turn;
-    for (std::size_t i = region.first; i < region.last;) {
-        for (std::size_t end = i + 1 + 2 * static_cast<std::size_t>(owner.vertices[i]), k = i + 1; k < end;
-             k += 2)
-            polygon.vertices.push_back(origin + owner.vertices[k] * steps.col(0) +
-                                       owner.vertices[k + 1] * steps.col(1));
-        i += 1 + 2 * static_cast<std::size_t>(owner.vertices[i]);
-        polygon.ring_ends.push_back(polygon.vertices.size());
-    }
+    const auto packed = std::span(owner.vertices).subspan(region.first, region.last - region.first);
+    std::size_t end = 0;
+    for_each_packed(
+        packed, [&](std::size_t size) { polygon.ring_ends.push_back(end += size); },
+        [&](std::int16_t x, std::int16_t y) {
+            polygon.vertices.push_back(origin + x * steps.col(0) + y * steps.col(1));
+        });
 }
 
 void take_points(StoredRegion& region, const StoredRegion& other, const Pose& camera_from_other) {
@@ -150,21 +135,6 @@ void take_region(StoredKeyframe& keyframe, const StoredRegion& other, const Stor
     keyframe.vertices.insert(keyframe.vertices.end(), owner.vertices.begin() + other.first,
                              owner.vertices.begin() + other.last);
     region.last = static_cast<std::uint32_t>(keyframe.vertices.size());
-}
-
-bool contains(const FlatPolygon& polygon, const Eigen::Vector2d& p) {
-    bool inside = false;
-    std::size_t begin = 0;
-    for (const std::size_t end : polygon.ring_ends) {
-        for (std::size_t i = begin, j = end - 1; i < end; j = i++) {
-            const Eigen::Vector2d &a = polygon.vertices[i], &b = polygon.vertices[j];
-            if ((a.y() > p.y()) != (b.y() > p.y()) &&
-                p.x() < a.x() + (p.y() - a.y()) * (b.x() - a.x()) / (b.y() - a.y()))
-                inside = !inside;
-        }
-        begin = end;
-    }
-    return inside;
 }
 
 std::size_t memory_bytes(const StoredKeyframe& keyframe) {

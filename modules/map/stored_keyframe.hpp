@@ -45,8 +45,8 @@ struct StoredKeyframe {
     std::optional<Pose> world_from_camera;  ///< the pose it is in the map with
 };
 
-/// Keeps what the map needs of a keyframe's regions; they must be valid. Vertices are rounded to a
-/// millimetre.
+/// Keeps what the map needs of a keyframe's regions; they must be valid. Outlines are packed as pack() does,
+/// and it throws as that does.
 StoredKeyframe stored(std::int64_t utime, const std::vector<PlanarRegion>& regions);
 
 /// A region where it is in the world.
@@ -65,9 +65,6 @@ void take_points(StoredRegion& region_camera, const StoredRegion& other, const P
 /// Appends a region of another keyframe as it is, its outline included. Sight does not know of it.
 void take_region(StoredKeyframe& keyframe, const StoredRegion& other, const StoredKeyframe& owner,
                  const Pose& camera_from_other);
-
-/// True when the polygon holds the point (even-odd rule).
-bool contains(const FlatPolygon& polygon, const Eigen::Vector2d& p);
 
 /// Depth of the region's points in the camera, on average, metres.
 inline double mean_depth(const StoredRegion& region_camera) {

@@ -10,6 +10,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/geometry/packed_outline.hpp"
+#include "core/geometry/plane_intersection.hpp"
 #include "core/stamp.hpp"
 #include "core/validation.hpp"
 #include "messages/image_codec.hpp"
@@ -103,6 +105,8 @@ Outline rings_from(const Sizes& sizes, std::size_t vertices, const Vertex& verte
     for (const auto size : sizes) {
         require(size >= 3 && static_cast<std::size_t>(size) <= vertices - at, "ring_sizes",
                 "does not fit n_vertices");
+        require(static_cast<std::size_t>(size) <= kMaxRingVertices, "ring_sizes",
+                "has a ring of more than 32767 vertices");
         Ring ring;
         for (int i = 0; i < size; ++i) ring.push_back(vertex(at++));
         outline.rings.push_back(std::move(ring));
@@ -395,12 +399,12 @@ map_plane_t to_message(const MapPlane& plane) {
     message.area = plane.area;
     message.n_keyframes = plane.keyframes;
     message.unit = plane.outline.unit;
-    const std::vector<std::int16_t>& packed = plane.outline.packed;
-    for (std::size_t i = 0; i < packed.size();) {
-        message.ring_sizes.push_back(packed[i++]);
-        for (int k = 0; k < message.ring_sizes.back(); ++k, i += 2)
-            message.vertices.push_back({packed[i], packed[i + 1]});
-    }
+    for_each_packed(
+        plane.outline.packed,
+        [&](std::size_t size) { message.ring_sizes.push_back(static_cast<std::int16_t>(size)); },
+        [&](std::int16_t x, std::int16_t y) {
+            message.vertices.push_back({x, y});
+        });
     if (message.ring_sizes.size() > 32767)
         throw std::length_error("plane " + std::to_string(plane.id) + ": too many rings");
     message.n_rings = static_cast<std::int16_t>(message.ring_sizes.size());
@@ -450,33 +454,14 @@ MapPlane from_message(const map_plane_t& message) {
     return plane;
 }
 
-/// The line that two planes share, in the terms of map_line_t.
-struct SharedLine {
-    Eigen::Vector3d origin, direction;
-    bool valid = false;  ///< false for (nearly) parallel planes
-};
-
-SharedLine shared_line(const MapPlane& plane_a, const MapPlane& plane_b) {
-    const Plane a = plane_a.plane(), b = plane_b.plane();
-    SharedLine line;
-    const Eigen::Vector3d cross = a.normal.cross(b.normal);
-    const double sine = cross.norm();
-    if (sine < 1e-3) return line;
-    line.direction = cross / sine;
-    // From plane a's centre, within plane a and square to the line, to plane b.
-    const Eigen::Vector3d center = a.project(plane_a.center.cast<double>());
-    const Eigen::Vector3d across = line.direction.cross(a.normal);
-    line.origin = center - across * (b.signed_distance(center) / b.normal.dot(across));
-    line.valid = line.origin.allFinite();
-    return line;
+/// What map_line_t and map_point_t count from, the same for who sends and who hears.
+std::optional<Line> shared_line(const MapPlane& a, const MapPlane& b) {
+    constexpr double kLeastSine = 1e-3;
+    return common_line(a.plane(), b.plane(), a.center.cast<double>(), kLeastSine);
 }
-
-/// The point that three planes share; nothing if they do not meet in one.
-std::optional<Eigen::Vector3d> shared_point(const Plane& a, const Plane& b, const Plane& c) {
-    Eigen::Matrix3d normals;
-    normals << a.normal.transpose(), b.normal.transpose(), c.normal.transpose();
-    if (std::abs(normals.determinant()) < 1e-4) return std::nullopt;
-    return Eigen::Vector3d(normals.inverse() * Eigen::Vector3d(-a.d, -b.d, -c.d));
+std::optional<Eigen::Vector3d> shared_point(const MapPlane& a, const MapPlane& b, const MapPlane& c) {
+    constexpr double kLeastVolume = 1e-4;
+    return common_point(a.plane(), b.plane(), c.plane(), kLeastVolume);
 }
 
 }  // namespace
@@ -492,18 +477,18 @@ plane_map_t to_message(const PlaneMap& map, std::int32_t seq) {
     message.n_planes = count32(message.planes.size());
     const auto index = [&](int id) { return static_cast<std::int16_t>(map.find(id) - map.planes.data()); };
     for (const IntersectionLine& line : map.lines) {
-        const SharedLine shared = shared_line(*map.find(line.plane_a), *map.find(line.plane_b));
-        if (!shared.valid) continue;
+        const auto shared = shared_line(*map.find(line.plane_a), *map.find(line.plane_b));
+        if (!shared) continue;
         map_line_t& m = message.lines.emplace_back();
         m.plane_a = index(line.plane_a);
         m.plane_b = index(line.plane_b);
-        m.from = static_cast<float>((line.from.cast<double>() - shared.origin).dot(shared.direction));
-        m.to = static_cast<float>((line.to.cast<double>() - shared.origin).dot(shared.direction));
+        m.from = static_cast<float>((line.from.cast<double>() - shared->origin).dot(shared->direction));
+        m.to = static_cast<float>((line.to.cast<double>() - shared->origin).dot(shared->direction));
     }
     message.n_lines = count32(message.lines.size());
     for (const IntersectionPoint& point : map.points) {
         const auto& [a, b, c] = point.planes;
-        if (!shared_point(map.find(a)->plane(), map.find(b)->plane(), map.find(c)->plane())) continue;
+        if (!shared_point(*map.find(a), *map.find(b), *map.find(c))) continue;
         map_point_t& m = message.points.emplace_back();
         for (std::size_t i = 0; i < 3; ++i) m.planes[i] = index(point.planes[i]);
     }
@@ -530,11 +515,11 @@ PlaneMap from_message(const plane_map_t& message) {
     for (const map_line_t& line : message.lines) {
         const MapPlane &a = plane_at(line.plane_a, "line.plane_a"),
                        &b = plane_at(line.plane_b, "line.plane_b");
-        const SharedLine shared = shared_line(a, b);
-        require(shared.valid, "line", "joins parallel planes");
+        const auto shared = shared_line(a, b);
+        require(shared.has_value(), "line", "joins parallel planes");
         require(std::isfinite(line.from) && std::isfinite(line.to), "line", "has an end that is not finite");
         const auto at = [&](float along) -> Eigen::Vector3f {
-            return (shared.origin + static_cast<double>(along) * shared.direction).cast<float>();
+            return (shared->origin + static_cast<double>(along) * shared->direction).cast<float>();
         };
         map.lines.push_back({a.id, b.id, at(line.from), at(line.to)});
     }
@@ -542,7 +527,7 @@ PlaneMap from_message(const plane_map_t& message) {
         const MapPlane &a = plane_at(point.planes[0], "point.planes"),
                        &b = plane_at(point.planes[1], "point.planes"),
                        &c = plane_at(point.planes[2], "point.planes");
-        const auto position = shared_point(a.plane(), b.plane(), c.plane());
+        const auto position = shared_point(a, b, c);
         require(position.has_value(), "point", "joins planes that do not meet in one point");
         map.points.push_back({{a.id, b.id, c.id}, position->cast<float>()});
     }

@@ -23,6 +23,7 @@ struct CellSums {
     double z = 0;
 };
 
+/// Not segmentation's fit: over pixels of a small cell, each weighted alike, with its own bytes.
 /// The plane of 1/z = a u + b v + c; d = 0 when the readings are not on one.
 Plane fit_cell(const CellSums& sums, double u0, double v0, const PinholeCamera& camera,
                const CameraInfo& info) {

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 #include <vector>
 
+#include "core/angle.hpp"
 #include "segmentation/cell_grid.hpp"
 #include "segmentation/growing.hpp"
 #include "segmentation/merging.hpp"
@@ -17,8 +17,6 @@
 namespace planemap::segmentation {
 
 namespace {
-
-constexpr double kRadians = std::numbers::pi / 180;
 
 class CellSegmenter : public Segmenter {
   public:
@@ -73,7 +71,7 @@ CellRules CellSegmenter::rules_for(const CameraInfo& camera) const {
     rules.lateral_px = options_.lateral_px;
     rules.grow_m = options_.grow_m;
     rules.grow_sigmas = options_.grow_sigmas;
-    rules.grow_angle_rad = options_.grow_angle_deg * kRadians;
+    rules.grow_angle_rad = radians(options_.grow_angle_deg);
     return rules;
 }
 
@@ -100,7 +98,7 @@ void CellSegmenter::merge_pieces(const CameraInfo& camera, std::vector<RegionSum
         if (i % columns + 1 < columns) meet(list, labeller_.cell_labels()[i + 1]);
         if (i + columns < grid_.size()) meet(list, labeller_.cell_labels()[i + columns]);
     }
-    merged_ = merge_regions({options_.merge_m, options_.merge_sigmas, options_.merge_angle_deg * kRadians,
+    merged_ = merge_regions({options_.merge_m, options_.merge_sigmas, radians(options_.merge_angle_deg),
                              kCellPx / camera.depth.fx, camera.noise},
                             pieces_, touching_);
     for (std::size_t r = 0; r < pieces_.size(); ++r) {

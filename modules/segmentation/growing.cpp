@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
+
+#include "core/angle.hpp"
 
 namespace planemap::segmentation {
 
 namespace {
 
-constexpr double kRadians = std::numbers::pi / 180;
 constexpr std::uint16_t kMaxRegions = 4096;
 
 /// The sums of a cell's points as its fit tells them, weighted by 1 / variance of inverse depth, times
@@ -39,7 +39,7 @@ PointSums weighted_sums(const Cell& cell, double sign = 1) {
 }  // namespace
 
 RegionGrower::RegionGrower(const CellOptions& options)
-    : options_(options), curved_(options.bend_deg * kRadians, options.grow_angle_deg * kRadians) {}
+    : options_(options), curved_(radians(options.bend_deg), radians(options.grow_angle_deg)) {}
 
 void RegionGrower::grow(const CellMap& map, double min_pixels) {
     result_.label_of_cell.assign(map.cells.size(), 0);
@@ -152,7 +152,7 @@ void RegionGrower::move(const CellMap& map, int cell, std::uint16_t label, int s
 void RegionGrower::merge(const CellMap& map) {
     find_touching(map, links_, result_, touching_);
     MergedLabels merged = merge_regions(
-        {options_.merge_m, options_.merge_sigmas, options_.merge_angle_deg * kRadians, map.cell_x, map.noise},
+        {options_.merge_m, options_.merge_sigmas, radians(options_.merge_angle_deg), map.cell_x, map.noise},
         result_.regions, touching_);
     for (std::uint16_t& label : result_.label_of_cell) {
         if (label != 0) label = merged.find(label);

@@ -169,6 +169,8 @@ void ShapeTracer::find_blocks(const Image<std::uint16_t>& labels, int block_px) 
     }
 }
 
+// Not Bitmap::trace(): that follows corners of cells that are set or not, one shape at a time; this one
+// follows the midpoints of edges, which make staircases straight, of all labels at once.
 void ShapeTracer::follow(int x, int y, std::uint16_t label) {
     // From corner to corner of the blocks with the label to the left of the way (x right, y up), starting
     // along the upper edge (smallest y) of block (x, y). The ring goes through the midpoints of the edges: a

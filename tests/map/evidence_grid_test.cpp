@@ -47,7 +47,7 @@ TEST(EvidenceGrid, HasTheAreaOfWhatWasAdded) {
     EXPECT_TRUE(contains(outline, {0.5, 0.3}));
 }
 
-TEST(EvidenceGrid, FillsTheCellsThatFillDoes) {
+TEST(EvidenceGrid, FillsTheCellsWhoseCentreIsInside) {
     std::mt19937_64 random(2);
     std::uniform_real_distribution<double> c(-4.4, 4.4);
     for (int trial = 0; trial < 20; ++trial) {
@@ -55,13 +55,12 @@ TEST(EvidenceGrid, FillsTheCellsThatFillDoes) {
         for (int i = 0; i < 9; ++i) outline.rings[0].emplace_back(c(random), c(random));
         EvidenceGrid grid(Pose::Identity(), 0.05);
         add(grid, outline);
-        Outline in_cells = outline;
-        for (auto& v : in_cells.rings[0]) v = v / 0.05 + Eigen::Vector2d(90, 90);
-        Mask mask(180, 180);
-        fill(in_cells, mask);
-        for (int y = 0; y < 180; ++y)
-            for (int x = 0; x < 180; ++x)
-                ASSERT_EQ(grid.counts({0.05 * (x - 89.5), 0.05 * (y - 89.5)}).hits, mask.at(x, y) ? 1 : 0);
+        for (int y = 0; y < 180; ++y) {
+            for (int x = 0; x < 180; ++x) {
+                const Eigen::Vector2d centre(0.05 * (x - 89.5), 0.05 * (y - 89.5));
+                ASSERT_EQ(grid.counts(centre).hits, contains(outline, centre) ? 1 : 0);
+            }
+        }
     }
 }
 

@@ -113,6 +113,12 @@ TEST(Convert, InconsistentMessagesAreErrors) {
     refused([](keyframe_t& m) { m.regions[0].count = kNan; });
     refused([](keyframe_t& m) { m.regions[0].ring_sizes[0] = 99; });
     refused([](keyframe_t& m) { m.regions[0].ring_sizes[0] = 2; });
+    refused([](keyframe_t& m) {  // consistent, but more than a kept outline's 16 bits can say
+        m.regions[0].ring_sizes = {32768};
+        m.regions[0].vertices.resize(32768);
+        m.regions[0].n_rings = 1;
+        m.regions[0].n_vertices = 32768;
+    });
     refused([](keyframe_t& m) { m.regions[0].vertices[0][0] = std::nanf(""); });
     refused([](keyframe_t& m) { m.regions[0].half_extents[0] = -1; });
     refused([](keyframe_t& m) { m.noise_base_m = -0.001; });

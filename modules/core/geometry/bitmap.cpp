@@ -4,8 +4,51 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 
 namespace planemap {
+
+namespace {
+
+/// Bits that are set after an odd number of set bits, themselves included: prefix parity.
+std::uint64_t parity_up_to(std::uint64_t bits) {
+    for (const int shift : {1, 2, 4, 8, 16, 32}) bits ^= bits << shift;
+    return bits;
+}
+
+}  // namespace
+
+/// Each edge flips, in every row whose centre line it crosses, all cells to its right: what is flipped an odd
+/// number of times is inside. Only the first of them is marked here, the others follow at once for all edges.
+void Bitmap::flip_right_of(Eigen::Vector2d a, Eigen::Vector2d b) {
+    if (a.y() > b.y()) std::swap(a, b);
+    if (!(a.y() < b.y())) return;  // along the rows, or not a number
+    const double end = rows_;
+    const int from = static_cast<int>(std::ceil(std::clamp(a.y(), 0.0, end)));
+    const int to = static_cast<int>(std::ceil(std::clamp(b.y(), 0.0, end)));
+    if (from >= to) return;
+    const double slope = (b.x() - a.x()) / (b.y() - a.y());
+    if (!std::isfinite(slope)) return;
+    const double beyond = 64 * words_;
+    double x = a.x() + (from - a.y()) * slope;
+    for (int y = from; y < to; ++y, x += slope) {
+        const double first = std::ceil(x);
+        if (!(first < beyond)) continue;
+        const int at = static_cast<int>(std::max(first, 0.0));
+        bits_[static_cast<std::size_t>(y * words_ + (at >> 6))] ^= std::uint64_t{1} << (at & 63);
+    }
+}
+
+void Bitmap::set_between_flips() {
+    for (int y = 0; y < rows_; ++y) {
+        std::uint64_t* words = bits_.data() + static_cast<std::ptrdiff_t>(y) * words_;
+        std::uint64_t carried = 0;  // all ones while inside
+        for (int w = 0; w < words_; ++w) {
+            words[w] = parity_up_to(words[w]) ^ carried;
+            carried = (words[w] >> 63) != 0 ? ~std::uint64_t{0} : 0;
+        }
+    }
+}
 
 std::size_t Bitmap::count() const {
     std::size_t total = 0;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/geometry/flat_polygon.hpp"
 #include "core/geometry/outline.hpp"
 
 namespace planemap {
@@ -21,6 +22,12 @@ class Bitmap {
           rows_(rows),
           bits_(static_cast<std::size_t>(words) * static_cast<std::size_t>(rows), 0) {}
 
+    /// As made anew, in the same memory.
+    void reset(int word0, int y0, int words, int rows) {
+        word0_ = word0, y0_ = y0, words_ = words, rows_ = rows;
+        bits_.assign(static_cast<std::size_t>(words) * static_cast<std::size_t>(rows), 0);
+    }
+
     int word0() const { return word0_; }
     int y0() const { return y0_; }
     int words() const { return words_; }
@@ -34,6 +41,17 @@ class Bitmap {
         return (row(y)[word] >> (x & 63) & 1) != 0;
     }
     std::size_t count() const;
+
+    /// Sets the cells of which the centre lies inside the polygon (even-odd rule); what lies beside the
+    /// bitmap is cut off. The bitmap must be empty before. from_first(vertex) is where a vertex lies from the
+    /// centre of the bitmap's first cell, in cells.
+    template <typename FromFirst>
+    void draw(const FlatPolygon& polygon, const FromFirst& from_first) {
+        for_each_edge(polygon, [&](const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
+            flip_right_of(from_first(from), from_first(to));
+        });
+        set_between_flips();
+    }
 
     /// Without parts narrower than 2 r + 1 cells (a square structuring element).
     Bitmap opened(int r) const;
@@ -52,6 +70,8 @@ class Bitmap {
         return static_cast<std::size_t>(y - y0_) * static_cast<std::size_t>(words_);
     }
     Bitmap widened_once(bool erode) const;
+    void flip_right_of(Eigen::Vector2d a, Eigen::Vector2d b);
+    void set_between_flips();
 
     int word0_ = 0, y0_ = 0, words_ = 0, rows_ = 0;
     std::vector<std::uint64_t> bits_;

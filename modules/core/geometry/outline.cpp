@@ -6,6 +6,8 @@
 #include <limits>
 #include <optional>
 
+#include "core/geometry/bitmap.hpp"
+#include "core/geometry/flat_polygon.hpp"
 #include "core/geometry/outline_index.hpp"
 #include "core/geometry/segment.hpp"
 
@@ -21,9 +23,7 @@ double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
 bool contains(const Ring& ring, const Eigen::Vector2d& p) {
     bool inside = false;
     for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
-        const Eigen::Vector2d &a = ring[i], &b = ring[j];
-        if ((a.y() > p.y()) == (b.y() > p.y())) continue;
-        if (p.x() < (b.x() - a.x()) * (p.y() - a.y()) / (b.y() - a.y()) + a.x()) inside = !inside;
+        if (passes_right_of(p, ring[i], ring[j])) inside = !inside;
     }
     return inside;
 }
@@ -101,11 +101,9 @@ bool contains(const Outline& outline, const Eigen::Vector2d& p) {
 double distance(const Outline& outline, const Eigen::Vector2d& p) {
     if (contains(outline, p)) return 0;
     double nearest = std::numeric_limits<double>::infinity();
-    for (const Ring& ring : outline.rings) {
-        for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
-            nearest = std::min(nearest, distance_to_segment(p, ring[j], ring[i]));
-        }
-    }
+    for_each_edge(outline, [&](const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
+        nearest = std::min(nearest, distance_to_segment(p, from, to));
+    });
     return nearest;
 }
 
@@ -148,24 +146,14 @@ Outline simplified(const Outline& outline, double tolerance) {
 }
 
 void fill(const Outline& outline, Mask& mask) {
-    std::vector<double> crossings;
+    FlatPolygon polygon;
+    polygon.assign(outline);
+    Bitmap inside(0, 0, (mask.width + 63) / 64, mask.height);
+    const Eigen::Vector2d first_centre(0.5, 0.5);
+    inside.draw(polygon, [&](const Eigen::Vector2d& v) -> Eigen::Vector2d { return v - first_centre; });
     for (int y = 0; y < mask.height; ++y) {
-        const double centre = y + 0.5;
-        crossings.clear();
-        for (const Ring& ring : outline.rings) {
-            for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
-                const Eigen::Vector2d &a = ring[i], &b = ring[j];
-                if ((a.y() > centre) == (b.y() > centre)) continue;
-                const double crossing = (b.x() - a.x()) * (centre - a.y()) / (b.y() - a.y()) + a.x();
-                if (std::isfinite(crossing)) crossings.push_back(crossing);
-            }
-        }
-        std::sort(crossings.begin(), crossings.end());
-        for (std::size_t k = 0; k + 1 < crossings.size(); k += 2) {
-            const double low = std::clamp(crossings[k] - 0.5, -1.0, static_cast<double>(mask.width));
-            const double high = std::clamp(crossings[k + 1] - 0.5, -1.0, static_cast<double>(mask.width));
-            for (int x = std::max(0, static_cast<int>(std::ceil(low))); x < mask.width && x < high; ++x)
-                mask.set(x, y);
+        for (int x = 0; x < mask.width; ++x) {
+            if (inside.at(x, y)) mask.set(x, y);
         }
     }
 }

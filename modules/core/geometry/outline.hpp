@@ -21,6 +21,14 @@ struct Outline {
     std::size_t vertex_count() const;
 };
 
+/// Calls edge(from, to) for every edge of the outline.
+template <typename Edge>
+void for_each_edge(const Outline& outline, const Edge& edge) {
+    for (const Ring& ring : outline.rings) {
+        for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) edge(ring[j], ring[i]);
+    }
+}
+
 /// Signed area by the shoelace formula: positive for counter-clockwise.
 double signed_area(const Ring& ring);
 

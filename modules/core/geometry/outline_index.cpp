@@ -60,8 +60,7 @@ void OutlineIndex::for_edges_beyond(const Eigen::Vector2d& p, Visit visit) const
     const std::size_t at = band(p.y());
     for (std::uint32_t m = starts_[at]; m < starts_[at + 1]; ++m) {
         const auto& [a, b, ring] = edges_[members_[m]];
-        if ((a.y() > p.y()) == (b.y() > p.y())) continue;
-        if (p.x() < (b.x() - a.x()) * (p.y() - a.y()) / (b.y() - a.y()) + a.x()) visit(ring);
+        if (passes_right_of(p, a, b)) visit(ring);
     }
     work_ += starts_[at + 1] - starts_[at];
 }
@@ -71,8 +70,7 @@ void OutlineIndex::crossings(double y, std::vector<double>& xs) const {
     const std::size_t at = band(y);
     for (std::uint32_t m = starts_[at]; m < starts_[at + 1]; ++m) {
         const auto& [a, b, ring] = edges_[members_[m]];
-        if ((a.y() > y) == (b.y() > y)) continue;
-        xs.push_back((b.x() - a.x()) * (y - a.y()) / (b.y() - a.y()) + a.x());
+        if (crosses(a, b, y)) xs.push_back(x_of_crossing(a, b, y));
     }
     work_ += starts_[at + 1] - starts_[at];
 }
