@@ -21,7 +21,6 @@ namespace planemap::graph {
 
 namespace {
 
-
 GraphOptions valid(const GraphOptions& options) {
     options.validate();
     return options;
@@ -78,7 +77,7 @@ class PoseGraph::Impl {
 void PoseGraph::Impl::extend(const Keyframe& keyframe) {
     const bool is_first_a_stray = keyframes_.size() == 1 && !expects(keyframe.id);
     check(keyframe,
-                 keyframes_.empty() || is_first_a_stray ? std::nullopt : std::optional(keyframes_.back().id));
+          keyframes_.empty() || is_first_a_stray ? std::nullopt : std::optional(keyframes_.back().id));
     if (is_first_a_stray) start_anew();
     append(keyframe);
     close_loops();
@@ -131,8 +130,8 @@ void PoseGraph::Impl::append_after_gap(KeyframeNode node) {
     const double seconds = std::clamp(
         static_cast<double>(node.utime) * 1e-6 - static_cast<double>(before.utime) * 1e-6, 0.0, 3600.0);
     topology_.add_gap(gap_tie(options_, last, last + 1,
-                                     before.odom_from_camera.inverse(Eigen::Isometry) * node.odom_from_camera,
-                                     seconds));
+                              before.odom_from_camera.inverse(Eigen::Isometry) * node.odom_from_camera,
+                              seconds));
     const Pose pose = orthonormalised(trajectory().world_from_odom * node.odom_from_camera);
     keyframes_.add(std::move(node), pose, last);
 }
@@ -253,8 +252,7 @@ std::size_t PoseGraph::Impl::memory_bytes() const {
            landmarks_.memory_bytes() + search_.memory_bytes() + history_.memory_bytes();
 }
 
-GraphOptimisation::GraphOptimisation(std::unique_ptr<OptimisationTask> task)
-    : task_(std::move(task)) {}
+GraphOptimisation::GraphOptimisation(std::unique_ptr<OptimisationTask> task) : task_(std::move(task)) {}
 GraphOptimisation::~GraphOptimisation() = default;
 GraphOptimisation::GraphOptimisation(GraphOptimisation&&) noexcept = default;
 GraphOptimisation& GraphOptimisation::operator=(GraphOptimisation&&) noexcept = default;

@@ -10,7 +10,6 @@
 #include "core/geometry/box.hpp"
 #include "core/geometry/union_find.hpp"
 #include "core/region.hpp"
-#include "core/geometry/union_find.hpp"
 #include "graph/options.hpp"
 
 namespace planemap::graph {

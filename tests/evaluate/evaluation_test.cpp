@@ -79,8 +79,7 @@ TEST(Associate, TakesTheClosestPairsFirstAndEachPoseOnce) {
     // than the limit.
     const Trajectory estimate{at(0.004, 0, 0, 0), at(0.008, 0, 0, 0), at(0.120, 0, 0, 0),
                               at(0.2199, 0, 0, 0)};
-    EXPECT_THAT(associate(truth, estimate, {}),
-                ElementsAre(PosePair(0, 0), PosePair(1, 1), PosePair(3, 3)));
+    EXPECT_THAT(associate(truth, estimate, {}), ElementsAre(PosePair(0, 0), PosePair(1, 1), PosePair(3, 3)));
 }
 
 TEST(Associate, GreedyMayLeaveAPoseOver) {
@@ -95,8 +94,7 @@ TEST(Associate, OffsetIsAddedToTheEstimate) {
     const Trajectory truth{at(10, 0, 0, 0), at(11, 0, 0, 0)};
     const Trajectory estimate{at(3, 0, 0, 0), at(4, 0, 0, 0)};
     EXPECT_TRUE(associate(truth, estimate, {}).empty());
-    EXPECT_THAT(associate(truth, estimate, {.offset_s = 7}),
-                ElementsAre(PosePair(0, 0), PosePair(1, 1)));
+    EXPECT_THAT(associate(truth, estimate, {.offset_s = 7}), ElementsAre(PosePair(0, 0), PosePair(1, 1)));
 }
 
 TEST(Evaluate, AteHandChecked) {

@@ -120,7 +120,7 @@ void EvaluationOptions::validate() const {
 }
 
 std::vector<PosePair> associate(const Trajectory& truth, const Trajectory& estimate,
-                                        const EvaluationOptions& options) {
+                                const EvaluationOptions& options) {
     const std::int64_t offset = microseconds(options.offset_s);
     const std::int64_t limit = microseconds(options.max_difference_s);
     std::vector<std::tuple<std::int64_t, std::size_t, std::size_t>> candidates;

@@ -36,7 +36,7 @@ using PosePair = std::pair<std::size_t, std::size_t>;
 /// Matches of two trajectories by time, in order of the truth's time: of all pairs closer than
 /// max_difference_s the closest is taken first, and each pose at most once (associate.py).
 std::vector<PosePair> associate(const Trajectory& truth, const Trajectory& estimate,
-                                        const EvaluationOptions& options);
+                                const EvaluationOptions& options);
 
 /// Absolute trajectory error: distances between positions after the estimate was laid on the truth.
 struct AbsoluteError {
