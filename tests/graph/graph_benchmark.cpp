@@ -92,7 +92,7 @@ Pose building_pose(int i) {
 Walk building_walk(int count, Random& random, bool with_features) {
     std::vector<Pose> poses;
     for (int i = 0; i < count; ++i) poses.push_back(building_pose(i));
-    odometry::Odometry odometry;
+    Odometry odometry;
     odometry.bias << 0.001, 0.0005, -0.002, 0.0001, 0.0004, -0.0001;
     Walk walk = test::walk(with_features ? wall_features(random) : std::vector<test::Landmark>(), poses,
                            random, odometry);

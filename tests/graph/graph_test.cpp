@@ -236,7 +236,7 @@ TEST_F(GraphTest, AWallSeenFromBothEndsTiesALongRoom) {
     // 16 m along a wall without any feature: odometry turns away, the wall does not.
     std::vector<Pose> poses;
     for (int i = 0; i <= 80; ++i) poses.push_back(looking({0.2 * i, 0, 0}, 0));
-    odometry::Odometry odometry;
+    Odometry odometry;
     odometry.bias << 0, 0, 0, 0, 0.002, 0;
     Walk walk = test::walk({}, poses, random_, odometry);
     for (Keyframe& keyframe : walk.keyframes) {

@@ -8,7 +8,7 @@
 #include "core/keyframe.hpp"
 #include "core/random_values.hpp"
 
-namespace planemap::graph::test {
+namespace planemap::test {
 
 struct Landmark {
     Eigen::Vector3d position;
@@ -95,13 +95,13 @@ struct Walk {
     std::vector<Keyframe> keyframes;
 };
 
-struct odometry::Odometry {
+struct Odometry {
     Twist bias = (Twist() << 0.004, 0.002, -0.003, 0.0005, 0.003, -0.0005).finished();
     double noise_m = 0.003, noise_rad = 0.001;
 };
 
 inline Walk walk(const std::vector<Landmark>& landmarks, const std::vector<Pose>& world_from_camera,
-                 Random& random, const odometry::Odometry& odometry = {}) {
+                 Random& random, const Odometry& odometry = {}) {
     Walk walk;
     walk.world_from_camera = world_from_camera;
     for (std::size_t i = 0; i < world_from_camera.size(); ++i) {
@@ -144,4 +144,4 @@ inline std::vector<Pose> square_loop(double side, int steps_a_side, double laps,
     return poses;
 }
 
-}  // namespace planemap::graph::test
+}  // namespace planemap::test

@@ -7,7 +7,7 @@
 
 #include "messages/convert.hpp"
 
-namespace planemap::messages::test {
+namespace planemap::test {
 
 inline PlanarRegion sample_region(double offset = 0) {
     PlanarRegion region;
@@ -63,4 +63,4 @@ std::vector<std::uint8_t> encoded(const T& message) {
     return bytes;
 }
 
-}  // namespace planemap::messages::test
+}  // namespace planemap::test

@@ -18,7 +18,7 @@
 #include <thread>
 #include <vector>
 
-namespace planemap::messages::test {
+namespace planemap::test {
 
 class TcpqServer {
   public:
@@ -130,4 +130,4 @@ class TcpqServer {
     std::thread thread_;
 };
 
-}  // namespace planemap::messages::test
+}  // namespace planemap::test

@@ -8,7 +8,7 @@
 #include "core/image.hpp"
 #include "core/keyframe.hpp"
 
-namespace planemap::octomap::test {
+namespace planemap::test {
 
 inline CameraInfo small_camera() {
     CameraInfo camera;
@@ -37,4 +37,4 @@ inline KeyframeTrajectory trajectory(const std::vector<Pose>& poses) {
     return result;
 }
 
-}  // namespace planemap::octomap::test
+}  // namespace planemap::test

@@ -26,7 +26,7 @@ struct Folder : test::TemporaryFolder {
         write("camera.json", kCamera);
         write("depth/1.png", encode_depth_png(numbered_depth(16, 12)));
         write("depth/2.png", encode_depth_png(DepthImage(16, 12, 7)));
-        write("rgb/1.jpg", messages::encode_jpeg(16, 12));
+        write("rgb/1.jpg", encode_jpeg(16, 12));
         write("depth.txt", "# depth\n1.0 depth/1.png\n2.0 depth/2.png\n");
     }
 };
@@ -42,7 +42,7 @@ TEST(Dataset, ReadsFramesInOrderOfTime) {
     EXPECT_EQ(frame.utime, 1000000);
     EXPECT_EQ(frame.color_utime, 1015000);
     EXPECT_EQ(frame.depth.pixels, numbered_depth(16, 12).pixels);
-    const std::string jpeg = messages::encode_jpeg(16, 12);
+    const std::string jpeg = encode_jpeg(16, 12);
     EXPECT_TRUE(std::equal(frame.color_jpeg.begin(), frame.color_jpeg.end(), jpeg.begin(), jpeg.end(),
                            [](std::uint8_t a, char b) { return static_cast<char>(a) == b; }));
     EXPECT_TRUE(frame.color.empty());
@@ -189,9 +189,9 @@ TEST(Dataset, AMissingFileIsABrokenFrame) {
 }
 
 TEST(Dataset, BrokenColorLeavesTheDepth) {
-    const std::string jpeg = messages::encode_jpeg(16, 12);
+    const std::string jpeg = encode_jpeg(16, 12);
     const std::pair<std::string, const char*> cases[] = {{jpeg.substr(0, jpeg.size() - 10), "cut short"},
-                                                         {messages::encode_jpeg(32, 12), "32x12"},
+                                                         {encode_jpeg(32, 12), "32x12"},
                                                          {"GIF89a", "neither a PNG nor a JPEG"}};
     for (const auto& [bytes, reason] : cases) {
         const Folder folder;

@@ -44,7 +44,7 @@ inline std::string encode_depth_png(const DepthImage& depth) {
                       {bytes, bytes + 2 * depth.pixels.size()});
 }
 
-inline std::string messages::encode_jpeg(int width, int height) {
+inline std::string encode_jpeg(int width, int height) {
     std::vector<std::uint8_t> pixels(static_cast<std::size_t>(3 * width * height));
     for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i] = static_cast<std::uint8_t>(i * 7);
     tjhandle encoder = tjInitCompress();
