@@ -14,7 +14,7 @@ using samples::points_of;
 using samples::stored_at;
 using samples::wall_at;
 
-const FreeSpace kFreeSpace{DepthNoise{}, 0.05};
+const FreeSpace kFreeSpace{0.05};
 
 TEST(FoldedPlanes, KeepPointsShapeAndKeyframes) {
     FoldedPlanes folded(kRules, 200);

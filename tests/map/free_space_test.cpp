@@ -15,7 +15,7 @@ using scene::facing;
 using scene::Rectangle;
 
 constexpr double kMargin_m = 0.05;
-const FreeSpace kFreeSpace{DepthNoise{}, kMargin_m};
+const FreeSpace kFreeSpace{kMargin_m};
 
 double shape_area(const PlaneEstimate& plane) {
     return area(plane.grid.outline({}));
