@@ -7,6 +7,8 @@
 #include <numbers>
 #include <random>
 
+#include "core/trace.hpp"
+
 namespace planemap::exports {
 namespace {
 
@@ -75,7 +77,7 @@ TEST(Triangulation, OfRasterOutlines) {
         Mask mask(20, 15);
         int cells = 0;
         for (auto& cell : mask.cells) cells += cell = set(random);
-        EXPECT_NEAR(covered(triangulate(trace(mask))), cells, 1e-9);
+        EXPECT_NEAR(covered(triangulate(test::trace(mask))), cells, 1e-9);
     }
 }
 

@@ -150,7 +150,7 @@ struct Problem {
     }
     OptimisationReport optimise() {
         std::vector<Landmark> planes = landmarks.landmarks();
-        const OptimisationReport report = optimise(poses, edges, 0, {3.0, 30}, &planes, landmarks.shared());
+        const OptimisationReport report = graph::optimise(poses, edges, 0, {3.0, 30}, &planes, landmarks.shared());
         landmarks.follow(planes, {});
         return report;
     }
@@ -232,8 +232,8 @@ void time_index(int count) {
 int main(int argc, char** argv) {
     const int keyframes = argc > 1 ? std::atoi(argv[1]) : 2000;
     const int places = argc > 2 ? std::atoi(argv[2]) : 10000;
-    planemap::time_optimisation(keyframes);
+    planemap::graph::time_optimisation(keyframes);
     if (places == 0) return 0;
-    planemap::time_graph(keyframes);
-    planemap::time_index(places);
+    planemap::graph::time_graph(keyframes);
+    planemap::graph::time_index(places);
 }

@@ -3,12 +3,39 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
+#include <span>
+#include <utility>
 
 #include "map/estimates.hpp"
 
 namespace planemap::map {
 namespace {
+
+/// Counter-clockwise. Precondition: three points at least that are not on one line.
+Ring convex_hull(std::span<const Eigen::Vector2d> points) {
+    std::vector<Eigen::Vector2d> sorted(points.begin(), points.end());
+    const auto less = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+        return std::pair(a.x(), a.y()) < std::pair(b.x(), b.y());
+    };
+    std::sort(sorted.begin(), sorted.end(), less);
+    sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
+    const auto cross = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+        return a.x() * b.y() - a.y() * b.x();
+    };
+    Ring hull;  // Andrew's monotone chain: lower hull, then upper
+    const auto extend = [&](const Eigen::Vector2d& p, std::size_t keep) {
+        while (hull.size() > keep && cross(hull.back() - hull[hull.size() - 2], p - hull.back()) <= 0)
+            hull.pop_back();
+        hull.push_back(p);
+    };
+    for (const auto& p : sorted) extend(p, 1);
+    const std::size_t lower = hull.size();
+    for (std::size_t i = sorted.size() - 1; i-- > 0;) extend(sorted[i], lower);
+    hull.pop_back();
+    return hull;
+}
 
 using samples::estimate_of;
 using samples::wall_at;

@@ -197,6 +197,6 @@ int run(int keyframes, double rate_hz, bool background) {
 int main(int argc, char** argv) {
     const int keyframes = argc > 1 ? std::atoi(argv[1]) : 3000;
     const double rate_hz = argc > 2 ? std::atof(argv[2]) : 30;
-    return planemap::run(std::max(keyframes, 1), std::max(rate_hz, 0.1),
+    return planemap::octomap::run(std::max(keyframes, 1), std::max(rate_hz, 0.1),
                          argc <= 3 || std::atoi(argv[3]) != 0);
 }
