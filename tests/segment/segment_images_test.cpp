@@ -33,7 +33,7 @@ class SegmentImages : public testing::Test {
 
     const test::TemporaryFolder folder;
     const CameraInfo camera = small_camera();
-    const std::filesystem::path image = folder.write("a.png", encode_depth_png(small_depth()));
+    const std::filesystem::path image = folder.write("a.png", sensor::encode_depth_png(small_depth()));
     SegmentImagesOptions options{{}, folder.path() / "out", 0, false, true, {}};
 };
 
@@ -71,11 +71,12 @@ TEST_F(SegmentImages, OverlayIsDrawnOnRequest) {
 }
 
 TEST_F(SegmentImages, ABadImageCostsItselfOnly) {
-    const std::string png = encode_depth_png(small_depth());
-    const SegmentImagesReport report = segment(
-        {folder.path() / "missing.png", folder.write("size.png", encode_depth_png(DepthImage(10, 20))),
-         folder.write("cut.png", png.substr(0, png.size() / 2)), folder.write("text.png", "hello"),
-         folder.write("empty.png", ""), image});
+    const std::string png = sensor::encode_depth_png(small_depth());
+    const SegmentImagesReport report =
+        segment({folder.path() / "missing.png",
+                 folder.write("size.png", sensor::encode_depth_png(DepthImage(10, 20))),
+                 folder.write("cut.png", png.substr(0, png.size() / 2)), folder.write("text.png", "hello"),
+                 folder.write("empty.png", ""), image});
     EXPECT_THAT(report.errors,
                 ElementsAre(AllOf(HasSubstr("missing.png"), HasSubstr("No such file")),
                             AllOf(HasSubstr("size.png"), HasSubstr("10x20"), HasSubstr("320x240")),
@@ -86,7 +87,7 @@ TEST_F(SegmentImages, ABadImageCostsItselfOnly) {
 }
 
 TEST_F(SegmentImages, ImagesCutBehindTheirLastPixelAreUsedAndSaid) {
-    const std::string png = encode_depth_png(small_depth());
+    const std::string png = sensor::encode_depth_png(small_depth());
     const std::string cut = png.substr(0, png.size() - 12);  // IEND
     const SegmentImagesReport report =
         segment({image, folder.write("cut.png", cut), folder.write("too.png", cut)});
@@ -99,13 +100,13 @@ TEST_F(SegmentImages, ImagesCutBehindTheirLastPixelAreUsedAndSaid) {
 
 TEST_F(SegmentImages, AnImageWithoutReadingsHasNoRegions) {
     const SegmentImagesReport report =
-        segment({folder.write("dark.png", encode_depth_png(DepthImage(320, 240)))});
+        segment({folder.write("dark.png", sensor::encode_depth_png(DepthImage(320, 240)))});
     EXPECT_THAT(report.errors, IsEmpty());
     EXPECT_EQ(json("dark.json")["regions"], nlohmann::json::array());
 }
 
 TEST_F(SegmentImages, TwoImagesOfOneNameAreRefusedBeforeAnythingIsDone) {
-    const auto twin = folder.write("other/a.png", encode_depth_png(small_depth()));
+    const auto twin = folder.write("other/a.png", sensor::encode_depth_png(small_depth()));
     EXPECT_THAT(test::error_of([&] {
                     segment({image, twin});
                 }),
@@ -116,7 +117,7 @@ TEST_F(SegmentImages, TwoImagesOfOneNameAreRefusedBeforeAnythingIsDone) {
 TEST_F(SegmentImages, InputsAreNotOverwritten) {
     options.output = folder.path();
     EXPECT_THAT(segment({image}).errors, ElementsAre(AllOf(HasSubstr("a.png"), HasSubstr("--output"))));
-    EXPECT_EQ(read_file(image), encode_depth_png(small_depth()));
+    EXPECT_EQ(read_file(image), sensor::encode_depth_png(small_depth()));
 }
 
 TEST_F(SegmentImages, AnEarlierRunsResultsAreReplacedAndOthersImagesAreNot) {
@@ -125,7 +126,7 @@ TEST_F(SegmentImages, AnEarlierRunsResultsAreReplacedAndOthersImagesAreNot) {
     options.overlay = false;
     folder.write("out/b.png", "a picture of something else");
     folder.write("out/c.json", "{}");
-    const auto second = folder.write("b.png", encode_depth_png(small_depth()));
+    const auto second = folder.write("b.png", sensor::encode_depth_png(small_depth()));
     EXPECT_THAT(segment({image, second}).errors,
                 ElementsAre(AllOf(HasSubstr("b.png"), HasSubstr("--output"))));
     EXPECT_FALSE(std::filesystem::exists(options.output / "a.overlay.png")) << "of the earlier run";

@@ -41,8 +41,8 @@ class SegmentProgram : public testing::Test {
 
     const test::TemporaryFolder folder;
     const std::filesystem::path camera = folder.write("camera.json", small_camera_json());
-    const std::filesystem::path first = folder.write("a.png", encode_depth_png(small_depth()));
-    const std::filesystem::path second = folder.write("b.png", encode_depth_png(small_depth()));
+    const std::filesystem::path first = folder.write("a.png", sensor::encode_depth_png(small_depth()));
+    const std::filesystem::path second = folder.write("b.png", sensor::encode_depth_png(small_depth()));
 };
 
 TEST_F(SegmentProgram, WritesLabelsAndRegionsOfEachImage) {

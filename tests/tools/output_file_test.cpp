@@ -56,19 +56,14 @@ TEST(OutputFile, WhatAFailureLeavesIsKeptAndSaid) {
 
 TEST(OutputFile, WhatCannotBeWrittenIsAnErrorAtOnce) {
     const test::TemporaryFolder folder;
-    const auto error_of = [](const std::filesystem::path& file) -> std::string {
-        try {
-            const OutputFile output(file);
-        } catch (const std::runtime_error& error) {
-            return error.what();
-        }
-        return "";
+    const auto error_of = [](const std::filesystem::path& file) {
+        return test::error_of([&] { const OutputFile output(file); });
     };
-    EXPECT_THAT(test::error_of(folder.path()), HasSubstr("is a folder"));
-    EXPECT_THAT(test::error_of(folder.path() / ""), HasSubstr("is a folder"));
-    EXPECT_THAT(test::error_of("/proc/nowhere/rows.json"), HasSubstr("/proc/nowhere"));
-    EXPECT_EQ(test::error_of("-"), "");
-    EXPECT_EQ(test::error_of(""), "");
+    EXPECT_THAT(error_of(folder.path()), HasSubstr("is a folder"));
+    EXPECT_THAT(error_of(folder.path() / ""), HasSubstr("is a folder"));
+    EXPECT_THAT(error_of("/proc/nowhere/rows.json"), HasSubstr("/proc/nowhere"));
+    EXPECT_EQ(error_of("-"), "");
+    EXPECT_EQ(error_of(""), "");
     OutputFile device("/dev/full");
     EXPECT_THROW(device.finish("[]"), std::runtime_error);
 }

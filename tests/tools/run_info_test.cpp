@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/option_list.hpp"
 #include "core/version.hpp"
 #include "messages/flags.hpp"
 
@@ -21,9 +22,10 @@ TEST(RunInfo, HasVersionDateSeedAndOptions) {
     flags.add("seed", seed, "of all");
     flags.add("camera", empty, "none given");
     flags.add("q,quiet", quiet, "say nothing");
-    flags.section("Map", "map-");
-    flags.add("method", method, "which");
-    flags.add("length-m", length_m, "how long");
+    OptionList list("Map");
+    list.add("method", method, {"cells", "ransac"}, "which");
+    list.add("length_m", length_m, kAnyNumber, "how long");
+    flags.add(list, "map-");
     nlohmann::ordered_json info = run_info(flags);
     EXPECT_EQ(info["version"], version());
     EXPECT_THAT(info["date"].get<std::string>(),
