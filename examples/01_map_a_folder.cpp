@@ -24,7 +24,7 @@ void map_recording(const char* input, const char* output) {
     sensor.finish();
     pipeline.finish();
 
-    const planemap::PlaneMap& map = pipeline.map().map();
+    const planemap::PlaneMap& map = pipeline.map().mapper().map();
     planemap::map::write_plane_map(output, map);
     std::printf("%zu poses, %zu planes in %s\n", pipeline.trajectory().size(), map.planes.size(), output);
 }

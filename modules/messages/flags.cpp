@@ -246,6 +246,13 @@ class Flags::Impl {
         known.push_back({option, [&field] { return value_of(field); }, "", false});
     }
 
+    /// Lets the option be one of the words, on the command line and in a file.
+    void choose_of(CLI::Option* option, const std::vector<std::string>& words) {
+        const CLI::Validator is_word = CLI::IsMember(words);
+        option->check(is_word);
+        checks[option] = [is_word](std::string& text) { return is_word(text); };
+    }
+
     /// The flag of an option that is described in a list.
     void add(const Option& described, const std::string& prefix, const std::string& heading) {
         const std::string name = prefix + described.flag();
@@ -260,7 +267,7 @@ class Flags::Impl {
                 }
             },
             described.field);
-        if (!described.choices.empty()) option->check(CLI::IsMember(described.choices));
+        if (!described.choices.empty()) choose_of(option, described.choices);
         option->group(heading);
         known.back().heading = heading;
         known.back().expert = described.audience == Audience::kExpert;
@@ -399,10 +406,7 @@ void Flags::add(const std::string& name, bool& field, const std::string& descrip
 }
 void Flags::add_choice(const std::string& name, std::string& field, const std::vector<std::string>& words,
                        const std::string& description) {
-    CLI::Option* const option = impl_->option(name, field, description)->capture_default_str();
-    const CLI::Validator is_word = CLI::IsMember(words);
-    option->check(is_word);
-    impl_->checks[option] = [is_word](std::string& text) { return is_word(text); };
+    impl_->choose_of(impl_->option(name, field, description)->capture_default_str(), words);
 }
 void Flags::required() {
     impl_->last->required();

@@ -98,9 +98,9 @@ void CellSegmenter::merge_pieces(const CameraInfo& camera, std::vector<RegionSum
         if (i % columns + 1 < columns) meet(list, labeller_.cell_labels()[i + 1]);
         if (i + columns < grid_.size()) meet(list, labeller_.cell_labels()[i + columns]);
     }
-    merged_ = merge_regions({options_.merge_m, options_.merge_sigmas, radians(options_.merge_angle_deg),
-                             kCellPx / camera.depth.fx, camera.noise},
-                            pieces_, touching_);
+    merge_regions({options_.merge_m, options_.merge_sigmas, radians(options_.merge_angle_deg),
+                   kCellPx / camera.depth.fx, camera.noise},
+                  pieces_, touching_, merged_);
     for (std::size_t r = 0; r < pieces_.size(); ++r) {
         const std::size_t into = merged_.find(static_cast<std::uint16_t>(r + 1)) - 1u;
         if (into == r) continue;

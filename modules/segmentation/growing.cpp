@@ -151,11 +151,11 @@ void RegionGrower::move(const CellMap& map, int cell, std::uint16_t label, int s
 
 void RegionGrower::merge(const CellMap& map) {
     find_touching(map, links_, result_, touching_);
-    MergedLabels merged = merge_regions(
+    merge_regions(
         {options_.merge_m, options_.merge_sigmas, radians(options_.merge_angle_deg), map.cell_x, map.noise},
-        result_.regions, touching_);
+        result_.regions, touching_, merged_);
     for (std::uint16_t& label : result_.label_of_cell) {
-        if (label != 0) label = merged.find(label);
+        if (label != 0) label = merged_.find(label);
     }
 }
 

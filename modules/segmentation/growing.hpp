@@ -46,6 +46,7 @@ class RegionGrower {
     std::vector<std::uint8_t> tried_;  // cells of a seed that came to nothing
     std::vector<Target> targets_;      // of the regions
     TouchList touching_;
+    MergedLabels merged_;
     std::vector<int> order_;
     std::vector<std::uint16_t> new_label_;
     std::vector<InverseDepthPlane> planes_;

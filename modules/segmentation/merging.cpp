@@ -78,8 +78,9 @@ void TouchList::gather(MergedLabels& merged) {
     entries_.resize(count);
 }
 
-MergedLabels merge_regions(const MergeRules& rules, std::vector<MergeRegion>& regions, TouchList& touching) {
-    MergedLabels merged(regions.size() + 1);
+void merge_regions(const MergeRules& rules, std::vector<MergeRegion>& regions, TouchList& touching,
+                   MergedLabels& merged) {
+    merged.reset(regions.size() + 1);
     touching.gather(merged);
     while (true) {
         const Touch* best = nullptr;
@@ -88,7 +89,7 @@ MergedLabels merge_regions(const MergeRules& rules, std::vector<MergeRegion>& re
             if (touch.cost < 0) touch.cost = merge_cost(rules, regions, touch);
             if (touch.cost < best_cost) best_cost = touch.cost, best = &touch;
         }
-        if (best == nullptr) return merged;
+        if (best == nullptr) return;
         const std::uint16_t into_label = best->a, from_label = best->b;
         MergeRegion &into = regions[into_label - 1], &from = regions[from_label - 1];
         into.sums += from.sums;

@@ -57,8 +57,9 @@ class TouchList {
 /// Distance along the plane's normal, metres, that a difference of inverse depth at depth z means.
 double distance_of(double inverse_depth, double z, const InverseDepthPlane& plane);
 
-/// Merges pairs that touch, those that fit best first, as long as there are any, and returns what has become
+/// Merges pairs that touch, those that fit best first, as long as there are any; `merged` is what has become
 /// one. A region that became part of another is left empty.
-MergedLabels merge_regions(const MergeRules& rules, std::vector<MergeRegion>& regions, TouchList& touching);
+void merge_regions(const MergeRules& rules, std::vector<MergeRegion>& regions, TouchList& touching,
+                   MergedLabels& merged);
 
 }  // namespace planemap::segmentation

@@ -55,8 +55,8 @@ void ThinRegions::remove(const CellMap& map, const CellLinks& links, const Borde
                          CellRegions& cell_regions) {
     count_squares(map, cell_regions);
     find_touching(map, links, cell_regions, touching_);
-    MergedLabels separate(cell_regions.regions.size() + 1);  // cells have the labels of what was merged
-    touching_.gather(separate);
+    separate_.reset(cell_regions.regions.size() + 1);  // cells have the labels of what was merged
+    touching_.gather(separate_);
     for (const Touch& touch : touching_.entries()) {
         const bool first =
             is_thin(cell_regions, touch.a) && cell_regions.at(touch.a).cells < cell_regions.at(touch.b).cells;

@@ -28,6 +28,7 @@ class ThinRegions {
 
     std::vector<int> squares_;  // two by two cells, of each region
     TouchList touching_;
+    MergedLabels separate_;
 };
 
 }  // namespace planemap::segmentation

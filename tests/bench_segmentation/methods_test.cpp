@@ -31,7 +31,7 @@ TEST(Decimated, CameraSeesTheSamePointsInTheSamePlaces) {
     for (const int step : {1, 2, 3, 4}) {
         const DepthImage small = decimated(depth, step);
         const CameraInfo small_camera = decimated(camera, step);
-        EXPECT_NO_THROW(segmentation::segmentation::check_input(small, small_camera));
+        EXPECT_NO_THROW(segmentation::check_input(small, small_camera));
         EXPECT_EQ(small.width, (645 + step - 1) / step);
         for (int v = 0; v < small.height; v += 11) {
             for (int u = 0; u < small.width; u += 11) {

@@ -58,7 +58,8 @@ TEST(MergingTest, HalvesOfAPlaneBecomeOne) {
         const MergeRegion left = region(kWall, -0.14, 0, 10, 8), right = region(kWall, 0, 0, 10, 8);
         std::vector<MergeRegion> regions{left, right};
         TouchList touching = chain(2, linked);
-        MergedLabels merged = merge_regions(rules(), regions, touching);
+        MergedLabels merged;
+        merge_regions(rules(), regions, touching, merged);
         EXPECT_EQ(merged.find(1), 1);
         EXPECT_EQ(merged.find(2), 1);
         EXPECT_EQ(regions[0].cells, 160);
@@ -77,7 +78,8 @@ TEST(MergingTest, OnlyRegionsThatTouchBecomeOne) {
     std::vector<MergeRegion> regions{region(kWall, -0.14, 0, 10, 8), region(kWall, 0, 0, 10, 8)};
     TouchList touching;
     touching.clear();
-    merge_regions(rules(), regions, touching);
+    MergedLabels merged;
+    merge_regions(rules(), regions, touching, merged);
     EXPECT_EQ(count_of(regions), 2);
 }
 
@@ -86,7 +88,8 @@ TEST(MergingTest, AStepOf3CmStays) {
         std::vector<MergeRegion> regions{region({0, 0, 1 / z}, -0.28, -0.2, 20, 20),
                                          region({0, 0, 1 / (z + 0.03)}, 0, -0.2, 20, 20)};
         TouchList touching = chain(2, 0);
-        merge_regions(rules(), regions, touching);
+        MergedLabels merged;
+        merge_regions(rules(), regions, touching, merged);
         EXPECT_EQ(count_of(regions), 2) << z;
     }
 }
@@ -96,7 +99,8 @@ TEST(MergingTest, WhatTheNoiseAllowsIsMoreFarAway) {
     std::vector<MergeRegion> regions{region({0, 0, 1 / 5.0}, -0.28, -0.2, 20, 20),
                                      region({0, 0, 1 / 5.03}, 0, -0.2, 20, 20)};
     TouchList touching = chain(2, 0);
-    merge_regions(rules(), regions, touching);
+    MergedLabels merged;
+    merge_regions(rules(), regions, touching, merged);
     EXPECT_EQ(count_of(regions), 1);
 }
 
@@ -105,7 +109,8 @@ TEST(MergingTest, ACreaseStaysHoweverWellItIsLinked) {
         std::vector<MergeRegion> regions{region({slope, 0, 0.6}, -0.28, -0.2, 20, 20),
                                          region({-slope, 0, 0.6}, 0, -0.2, 20, 20)};
         TouchList touching = chain(2, 10);
-        merge_regions(rules(), regions, touching);
+        MergedLabels merged;
+        merge_regions(rules(), regions, touching, merged);
         EXPECT_EQ(count_of(regions), 2) << slope;
     }
 }
@@ -115,13 +120,15 @@ TEST(MergingTest, AnInvalidFitNeverMerges) {
                                      region(kWall, 0.14, 0, 10, 8)};
     regions[1].fit = {};
     TouchList touching = chain(3, 10);
-    merge_regions(rules(), regions, touching);
+    MergedLabels merged;
+    merge_regions(rules(), regions, touching, merged);
     EXPECT_EQ(count_of(regions), 3);
     // Valid on their own, but together not a number.
     regions[1] = regions[2];
     regions[1].sums.xx = std::nan("");
     touching = chain(2, 10);
-    merge_regions(rules(), regions, touching);
+    MergedLabels merged;
+    merge_regions(rules(), regions, touching, merged);
     EXPECT_EQ(count_of(regions), 3);
 }
 
@@ -130,7 +137,8 @@ TEST(MergingTest, NoiseThatIsNotFiniteMergesNothingAndEnds) {
     MergeRules bad = rules();
     bad.noise = {0, 0, 1e300};  // 0 times infinity
     TouchList touching = chain(2, 10);
-    merge_regions(bad, regions, touching);
+    MergedLabels merged;
+    merge_regions(bad, regions, touching, merged);
     EXPECT_EQ(count_of(regions), 2);
 }
 
@@ -139,7 +147,8 @@ TEST(MergingTest, ChainsMergeIntoOne) {
     std::vector<MergeRegion> regions;
     for (int r = 0; r < kParts; ++r) regions.push_back(region(kWall, -0.3 + 4 * kCell * r, 0, 4, 6));
     TouchList touching = chain(kParts, 10);
-    MergedLabels merged = merge_regions(rules(), regions, touching);
+    MergedLabels merged;
+    merge_regions(rules(), regions, touching, merged);
     ASSERT_EQ(count_of(regions), 1);
     for (int r = 1; r <= kParts; ++r) EXPECT_EQ(merged.find(static_cast<std::uint16_t>(r)), 1);
     EXPECT_EQ(regions[0].cells, kParts * 24);
@@ -151,7 +160,8 @@ TEST(MergingTest, ChainsStopAtAStep) {
     for (int r = 0; r < 6; ++r)
         regions.push_back(region({0, 0, 1 / (r < 3 ? 1.5 : 1.53)}, -0.2 + 4 * kCell * r, 0, 4, 20));
     TouchList touching = chain(6, 0);
-    MergedLabels merged = merge_regions(rules(), regions, touching);
+    MergedLabels merged;
+    merge_regions(rules(), regions, touching, merged);
     EXPECT_EQ(count_of(regions), 2);
     EXPECT_EQ(merged.find(3), 1);
     EXPECT_EQ(merged.find(6), 4);

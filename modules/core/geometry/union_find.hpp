@@ -16,6 +16,11 @@ class UnionFind {
     explicit UnionFind(std::size_t size = 0) { resize(size); }
 
     std::size_t size() const { return parent_.size(); }
+    /// As a new one of that size, in the memory that there is.
+    void reset(std::size_t size) {
+        parent_.clear();
+        resize(size);
+    }
     /// Adds sets of one member each; what there is stays. Precondition: not less than size().
     void resize(std::size_t size) {
         parent_.reserve(size);
