@@ -127,7 +127,6 @@ TEST(MergingTest, AnInvalidFitNeverMerges) {
     regions[1] = regions[2];
     regions[1].sums.xx = std::nan("");
     touching = chain(2, 10);
-    MergedLabels merged;
     merge_regions(rules(), regions, touching, merged);
     EXPECT_EQ(count_of(regions), 3);
 }
