@@ -26,7 +26,8 @@ void check(const PinholeCamera& camera, const std::string& name, FieldErrors& er
     using Limits = CameraLimits;
     constexpr int kMaxSide = 8192;
     const auto within = [&](double value, double low, double high, const char* field, const char* unit) {
-        errors.require(value >= low && value <= high, name + field, value, range_text(low, high, unit));
+        if (!(value >= low && value <= high))  // words cost memory, and cameras are checked every frame
+            errors.require(false, name + field, value, range_text(low, high, unit));
     };
     within(camera.width, 1, kMaxSide, ".width", "");
     within(camera.height, 1, kMaxSide, ".height", "");
@@ -40,8 +41,9 @@ void check(const PinholeCamera& camera, const std::string& name, FieldErrors& er
     within(camera.cy, -Limits::kOutside * height, (1 + Limits::kOutside) * height, ".cy", " pixels");
     const double aspect = camera.fx / camera.fy;
     if (!(camera.fx > 0 && camera.fy > 0 && std::isfinite(aspect))) return;
+    if (aspect >= Limits::kLeastAspect && aspect <= Limits::kMostAspect) return;
     errors.require(
-        aspect >= Limits::kLeastAspect && aspect <= Limits::kMostAspect, name + ".fx / " + name + ".fy",
+        false, name + ".fx / " + name + ".fy",
         number_text(aspect) + " (" + number_text(camera.fx) + " / " + number_text(camera.fy) + " pixels)",
         range_text(Limits::kLeastAspect, Limits::kMostAspect, ""));
 }
@@ -51,11 +53,12 @@ void check_units(const CameraInfo& camera, FieldErrors& errors) {
     using Limits = CameraLimits;
     const double units = camera.depth_units_per_metre;
     const bool units_good = units >= Limits::kLeastUnits && units <= Limits::kMostUnits;
-    errors.require(units_good, "depth_units_per_metre", units,
-                   range_text(Limits::kLeastUnits, Limits::kMostUnits, ""));
+    if (!units_good)
+        errors.require(false, "depth_units_per_metre", units,
+                       range_text(Limits::kLeastUnits, Limits::kMostUnits, ""));
     const double farthest = 65535 / units;
-    if (units_good && camera.depth_min_m >= 0 && std::isfinite(camera.depth_min_m)) {
-        errors.require(farthest > camera.depth_min_m, "depth_units_per_metre", units,
+    if (units_good && camera.depth_min_m >= 0 && farthest <= camera.depth_min_m) {
+        errors.require(false, "depth_units_per_metre", units,
                        "such that 16 bits reach beyond depth_min_m, " + number_text(camera.depth_min_m) +
                            " m: they end at " + number_text(farthest) + " m");
     }
@@ -87,12 +90,16 @@ void check_depth(const DepthNoise& noise, double min_m, double max_m, FieldError
     errors.require(good[2], "noise.offset_m", noise.offset_m, "finite");
     if (!(good[0] && good[1] && good[2] && min_m < max_m && std::isfinite(max_m))) return;
     const double quietest = std::clamp(noise.offset_m, min_m, max_m);
-    errors.require(noise.sigma(quietest) >= CameraLimits::kLeastSigma_m,
-                   "noise at " + number_text(quietest) + " m", noise.sigma(quietest),
-                   "at least " + number_text(CameraLimits::kLeastSigma_m) + " m (base_m, quadratic_per_m)");
+    if (!(noise.sigma(quietest) >= CameraLimits::kLeastSigma_m)) {
+        errors.require(
+            false, "noise at " + number_text(quietest) + " m", noise.sigma(quietest),
+            "at least " + number_text(CameraLimits::kLeastSigma_m) + " m (base_m, quadratic_per_m)");
+    }
     const double loudest = std::max(noise.sigma(min_m), noise.sigma(max_m));
-    errors.require(loudest <= max_m, "noise within the depth range", loudest,
-                   "at most its far end, " + number_text(max_m) + " m");
+    if (!(loudest <= max_m)) {
+        errors.require(false, "noise within the depth range", loudest,
+                       "at most its far end, " + number_text(max_m) + " m");
+    }
 }
 
 void CameraInfo::validate() const {

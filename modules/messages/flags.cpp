@@ -250,7 +250,9 @@ class Flags::Impl {
     void choose_of(CLI::Option* option, const std::vector<std::string>& words) {
         const CLI::Validator is_word = CLI::IsMember(words);
         option->check(is_word);
-        checks[option] = [is_word](std::string& text) { return is_word(text); };
+        checks[option] = [is_word](std::string& text) {
+            return text.empty() ? std::string("must not be empty") : is_word(text);
+        };
     }
 
     /// The flag of an option that is described in a list.
