@@ -150,7 +150,8 @@ struct Problem {
     }
     OptimisationReport optimise() {
         std::vector<Landmark> planes = landmarks.landmarks();
-        const OptimisationReport report = graph::optimise(poses, edges, 0, {3.0, 30}, &planes, landmarks.shared());
+        const OptimisationReport report =
+            graph::optimise(poses, edges, 0, {3.0, 30}, &planes, landmarks.shared());
         landmarks.follow(planes, {});
         return report;
     }

@@ -198,5 +198,5 @@ int main(int argc, char** argv) {
     const int keyframes = argc > 1 ? std::atoi(argv[1]) : 3000;
     const double rate_hz = argc > 2 ? std::atof(argv[2]) : 30;
     return planemap::octomap::run(std::max(keyframes, 1), std::max(rate_hz, 0.1),
-                         argc <= 3 || std::atoi(argv[3]) != 0);
+                                  argc <= 3 || std::atoi(argv[3]) != 0);
 }

@@ -265,7 +265,8 @@ TEST_F(Stored, OptionsAreTakenOrRefusedByName) {
         const std::size_t at = outcome.err.find(before);
         ASSERT_NE(at, std::string::npos) << outcome.err;
         const std::size_t name = at + before.size();
-        const std::string line = outcome.err.substr(name, outcome.err.find_first_of(" ,", name) - name) + " =";
+        const std::string line =
+            outcome.err.substr(name, outcome.err.find_first_of(" ,", name) - name) + " =";
         const std::size_t found = options.find("\n" + line);
         ASSERT_NE(found, std::string::npos) << line << "\n" << outcome.err;
         options.erase(found, options.find('\n', found + 1) - found);
