@@ -40,7 +40,7 @@ struct MapOutline {
     friend bool operator==(const MapOutline&, const MapOutline&) = default;
 };
 
-/// One plane of the map: 96 bytes and 4 an outline vertex, in single precision (which is a micrometre in a
+/// One plane of the map: 88 bytes and 4 an outline vertex, in single precision (which is a micrometre in a
 /// building). Its frame has the origin at the centre of its box (the paper's B), z along the normal.
 struct MapPlane {
     int id = -1;  ///< stable while the plane is the same
