@@ -5,6 +5,8 @@
 #include <array>
 #include <utility>
 
+#include "segmentation/shape.hpp"
+
 namespace planemap::segmentation {
 
 namespace {
@@ -16,6 +18,17 @@ int cells_across(int pixels) {
 }
 
 }  // namespace
+
+CellRules sensor_rules(const CameraInfo& camera) {
+    const DepthRange range(camera);
+    CellRules rules;
+    rules.camera = camera.depth;
+    rules.units_per_metre = camera.depth_units_per_metre;
+    rules.low = range.low;
+    rules.high = range.high;
+    rules.noise = camera.noise;
+    return rules;
+}
 
 void CellGrid::reset(const DepthImage& depth, const CellRules& rules) {
     rules_ = rules;

@@ -5,10 +5,14 @@
 #include <span>
 #include <vector>
 
+#include "core/camera.hpp"
 #include "core/image.hpp"
 #include "segmentation/cell_kernels.hpp"
 
 namespace planemap::segmentation {
+
+/// What the sensor says of the rules: its geometry, units, range and noise. The rest is the caller's.
+CellRules sensor_rules(const CameraInfo& camera);
 
 /// A depth image cut into cells of 8 x 8 pixels, row by row. An image whose sides are no multiple of a cell
 /// is padded with invalid readings.

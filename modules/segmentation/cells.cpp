@@ -59,13 +59,7 @@ class CellSegmenter : public Segmenter {
 };
 
 CellRules CellSegmenter::rules_for(const CameraInfo& camera) const {
-    const DepthRange range(camera);
-    CellRules rules;
-    rules.camera = camera.depth;
-    rules.units_per_metre = camera.depth_units_per_metre;
-    rules.low = range.low;
-    rules.high = range.high;
-    rules.noise = camera.noise;
+    CellRules rules = sensor_rules(camera);
     rules.min_pixels = options_.min_fill * kCellPx * kCellPx;
     rules.planarity_sigmas = options_.planarity_sigmas;
     rules.lateral_px = options_.lateral_px;

@@ -30,13 +30,7 @@ DepthImage noisy_depth(int width, int height, double invalid_share) {
 }
 
 CellRules rules_for(const CameraInfo& camera) {
-    const DepthRange range(camera);
-    CellRules rules;
-    rules.camera = camera.depth;
-    rules.units_per_metre = camera.depth_units_per_metre;
-    rules.low = range.low;
-    rules.high = range.high;
-    rules.noise = camera.noise;
+    CellRules rules = sensor_rules(camera);
     rules.min_pixels = 10;
     rules.planarity_sigmas = 3;
     rules.grow_m = 0.01;

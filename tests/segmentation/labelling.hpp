@@ -24,13 +24,7 @@ inline InverseDepthPlane inverse_depth(const Plane& plane) {
 class Labelling {
   public:
     Labelling(const DepthImage& depth, const std::function<bool(int, int)>& is_in) {
-        const DepthRange range(camera);
-        CellRules rules;
-        rules.camera = camera.depth;
-        rules.units_per_metre = camera.depth_units_per_metre;
-        rules.low = range.low;
-        rules.high = range.high;
-        rules.noise = camera.noise;
+        CellRules rules = sensor_rules(camera);
         rules.min_pixels = 32;
         rules.planarity_sigmas = 1.2;
         rules.grow_m = 0.01;
