@@ -19,13 +19,6 @@ class ComparisonTest : public testing::Test {
         keyframe.features = see(room_, pose, random_);
         return make_view(keyframe, 1000);
     }
-    /// A wall seen from the camera, facing it at z metres.
-    static PlanarRegion wall(double z, double half = 1.0) {
-        Pose box = Pose::Identity();
-        box.linear() = Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()).toRotationMatrix();
-        box.translation().z() = z;
-        return rectangle(box, half, half);
-    }
 
     Random random_{1};
     std::vector<test::Landmark> room_ = make_room(random_, Eigen::Vector3d::Zero(), 2.5, 1500);

@@ -89,6 +89,14 @@ inline PlanarRegion rectangle(const Pose& frame_from_box, double half_x, double 
     return region;
 }
 
+/// A wall seen from the camera, facing it at z metres.
+inline PlanarRegion wall(double z, double half = 1.0) {
+    Pose box = Pose::Identity();
+    box.linear() = Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()).toRotationMatrix();
+    box.translation().z() = z;
+    return rectangle(box, half, half);
+}
+
 /// Keyframes along true poses with edges that drift: each edge errs by a bias and by noise.
 struct Walk {
     std::vector<Pose> world_from_camera;  ///< truth; the first is the odom frame

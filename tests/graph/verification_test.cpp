@@ -21,13 +21,6 @@ class VerificationTest : public testing::Test {
         return keyframe;
     }
     KeyframeView view_at(const Pose& pose) { return make_view(keyframe_at(pose), 1000); }
-    /// A wall seen from the camera, facing it at z metres.
-    static PlanarRegion wall(double z, double half = 1.0) {
-        Pose box = Pose::Identity();
-        box.linear() = Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()).toRotationMatrix();
-        box.translation().z() = z;
-        return rectangle(box, half, half);
-    }
 
     Random random_{1};
     std::vector<Landmark> room_ = make_room(random_, Eigen::Vector3d::Zero(), 2.5, 1500);
