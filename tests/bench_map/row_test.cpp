@@ -90,16 +90,5 @@ TEST(Row, GoalsAreJudgedFromTheFigures) {
     EXPECT_THAT(text, HasSubstr("<= 0.01  NOT met: 0.0200"));
 }
 
-TEST(Errors, MeanMedianAndWorst) {
-    const std::vector<PairMeasure> pairs{{0, 1, 2, 2.1}, {0, 2, 1, 0.8}, {1, 2, 4, 4}, {1, 3, 1, 1}};
-    const Statistics metres = errors_of(pairs), percent = relative_errors_of(pairs);
-    EXPECT_NEAR(metres.mean, 0.075, 1e-9);
-    EXPECT_NEAR(metres.median, 0.05, 1e-9);
-    EXPECT_NEAR(metres.max, 0.2, 1e-9);
-    EXPECT_NEAR(percent.mean, 6.25, 1e-9);
-    EXPECT_NEAR(percent.max, 20, 1e-9);
-    EXPECT_EQ(errors_of({}).count, 0u);
-}
-
 }  // namespace
 }  // namespace planemap::bench_map

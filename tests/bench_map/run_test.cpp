@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "bench_map/true_poses.hpp"
-#include "bench_map/truth.hpp"
+#include "evaluate/true_planes.hpp"
 
 namespace planemap::bench_map {
 namespace {
@@ -20,7 +20,7 @@ TEST(RunSequence, MapsBothKindsOfPoses) {
     EXPECT_EQ(seen, 30);
     ASSERT_TRUE(run.true_poses && run.truth);
     EXPECT_EQ(run.true_poses->poses.keyframes.size(), run.keyframes.size());
-    const auto truth = true_planes(kOffice, 30).value();
+    const auto truth = evaluation::true_planes(kOffice, 30).value();
     const auto truth_from_map = alignment(run.true_poses->poses, run.estimated.poses);
     ASSERT_TRUE(truth_from_map);
     for (const auto& [map_run, pose] :

@@ -88,6 +88,21 @@ TEST_F(RunTest, WritesEverythingAndTheSameBytesAgain) {
     EXPECT_EQ(Json::parse(evaluated.out).at("pairs"), 60);
 }
 
+TEST_F(RunTest, AnInputThatIsSimulatedTellsTheTrueMapToo) {
+    const std::string input = "'sim:office?frames=20&width=320&height=240' ";
+    ASSERT_EQ(run("planemap-run", input + "--no-octomap -q --output " + path("room")).exit_code, 0);
+    const Result judged = run("planemap-evaluate", input + path("room") + " --json -");
+    ASSERT_EQ(judged.exit_code, 0) << judged.err;
+    const Json json = Json::parse(judged.out);
+    EXPECT_EQ(json.at("pairs"), 20);
+    EXPECT_GE(json.at("map").at("found").get<int>(), 3) << judged.out;
+    EXPECT_LE(json.at("map").at("found").get<int>(), json.at("map").at("planes_true").get<int>());
+    EXPECT_LT(json.at("map").at("angle_error_mean_deg").get<double>(), 1) << judged.out;
+    expect_error("planemap-evaluate", input + path("room/trajectory.txt"), "planemap-run left");
+    std::filesystem::remove(path("room/plane_map.lcmlog"));
+    expect_error("planemap-evaluate", input + path("room"), "plane_map.lcmlog");
+}
+
 TEST_F(RunTest, MapsAtGivenPosesAndGoesOnFromAMap) {
     ASSERT_EQ(run("planemap-simulate", "'sim:office?frames=40' --output " + path("office.lcmlog")).exit_code,
               0);

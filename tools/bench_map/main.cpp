@@ -6,9 +6,9 @@
 #include "bench_map/growth.hpp"
 #include "bench_map/row.hpp"
 #include "bench_map/true_poses.hpp"
-#include "bench_map/truth.hpp"
 #include "benchmark/choices.hpp"
 #include "benchmark/report.hpp"
+#include "evaluate/true_planes.hpp"
 
 namespace planemap::bench_map {
 
@@ -109,7 +109,8 @@ std::vector<Row> rows_of(const Arguments& arguments, const std::vector<PosesInfo
     options.pipeline = arguments.pipeline;
     options.pipeline.with_octomap = !arguments.no_octomap;
     SequenceRun run = run_sequence(input, options, benchmark::frame_counter(sequence, arguments.quiet));
-    const std::optional<std::vector<TruePlane>> truth = true_planes(input, arguments.frames);
+    const std::optional<std::vector<evaluation::TruePlane>> truth =
+        evaluation::true_planes(input, arguments.frames);
     std::vector<Row> rows;
     if (wanted("estimated")) {
         Row& row = rows.emplace_back(Row{sequence, "estimated", run.estimated, std::nullopt, {}});

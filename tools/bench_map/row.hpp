@@ -9,8 +9,7 @@
 #include "bench_map/run.hpp"
 #include "bench_map/surface_check.hpp"
 #include "benchmark/table.hpp"
-#include "evaluate/plane_judge.hpp"
-#include "evaluate/statistics.hpp"
+#include "evaluate/judgement_report.hpp"
 
 namespace planemap::bench_map {
 
@@ -23,10 +22,6 @@ struct Row {
     std::optional<evaluation::Judgement> judgement;  ///< nothing without the true planes
     std::vector<SurfaceCheck> surfaces;              ///< empty where it was not done
 };
-
-/// Errors over pairs of planes, metres or degrees; those of distances also in percent of the true distance.
-Statistics errors_of(const std::vector<evaluation::PairMeasure>& pairs);
-Statistics relative_errors_of(const std::vector<evaluation::PairMeasure>& pairs);
 
 /// A row as --json writes it; null for what is not known.
 Json to_json(const Row& row);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// planemap-evaluate: ATE and RPE of a trajectory against the truth.
+// planemap-evaluate: a trajectory, and in a simulated world a map, against the truth.
 #include <cstdio>
 #include <filesystem>
 #include <map>
@@ -11,7 +11,11 @@
 #include "core/standard_output.hpp"
 #include "core/trajectory_file.hpp"
 #include "evaluate/evaluation.hpp"
+#include "evaluate/judgement_report.hpp"
+#include "evaluate/true_planes.hpp"
+#include "map/map_file.hpp"
 #include "messages/process.hpp"
+#include "simulator/simulated_source.hpp"
 
 namespace planemap {
 namespace {
@@ -30,13 +34,16 @@ const std::map<std::string, DeltaUnit> delta_units{{"s", DeltaUnit::seconds},
                                                    {"f", DeltaUnit::frames}};
 
 void add_flags(messages::Flags& flags, Arguments& arguments) {
-    flags.add_positional("TRUTH", arguments.truth_file,
-                         "true trajectory: lines `timestamp tx ty tz qx qy qz qw` (TUM), EuRoC's csv, or "
-                         "KITTI's 12 numbers a line; timestamps in s, ms, us or ns, known by their size");
+    flags.add_positional(
+        "TRUTH", arguments.truth_file,
+        "true trajectory: lines `timestamp tx ty tz qx qy qz qw` (TUM), EuRoC's csv, or "
+        "KITTI's 12 numbers a line; timestamps in s, ms, us or ns, known by their size. A simulated "
+        "input (sim:office?frames=300) tells the true poses and the true planes");
     flags.add_positional(
         "ESTIMATE", arguments.estimate_file,
         "estimated trajectory, in any of these forms; KITTI's has no timestamps and goes with "
-        "KITTI's only: pose i with pose i");
+        "KITTI's only: pose i with pose i. For a simulated TRUTH: the folder that planemap-run "
+        "left, of which trajectory.txt and plane_map.lcmlog are judged");
     flags.add("json", arguments.json_file,
               "write the figures as JSON to this file, or to - (standard output)");
     flags.add("max-difference", arguments.options.max_difference_s,
@@ -118,14 +125,45 @@ void print_table(const Evaluation& evaluation) {
     print_rows("RPE per 1 s", evaluation.rpe_1s, evaluation.why_no_rpe_1s);
 }
 
+void print_judgement(const evaluation::Judgement& judgement) {
+    std::printf("map: %zu of %zu true planes found, %zu map planes too many (split), %zu spurious\n",
+                judgement.found(), judgement.seen(), judgement.split(), judgement.spurious.size());
+    const auto row = [](const char* name, const char* unit, const Statistics& errors) {
+        if (errors.count > 0) print_row(name, unit, errors);
+    };
+    row("distances", "m", evaluation::errors_of(judgement.distances));
+    row("angles", "deg", evaluation::errors_of(judgement.angles));
+    if (const auto iou = judgement.outline_iou()) std::printf("outlines: IoU %.3f\n", *iou);
+    print(evaluation::judgement_details(judgement, false));
+}
+
 /// The two trajectories, and how their poses are matched: by time, or without timestamps by their number.
 struct Pair {
     TrajectoryFile truth, estimate;
     bool by_index = false;
 };
 
-Pair read_pair(const Arguments& arguments) {
-    Pair pair{read_trajectory_file(arguments.truth_file), read_trajectory_file(arguments.estimate_file)};
+bool is_simulated(const std::string& truth) {
+    return truth.starts_with("sim:");
+}
+
+/// Of a simulated input and a result folder, whose trajectory is then the estimate's file.
+Pair simulated_pair(Arguments& arguments) {
+    const std::filesystem::path folder = arguments.estimate_file;
+    if (!std::filesystem::is_directory(folder)) {
+        throw std::runtime_error(
+            arguments.estimate_file +
+            ": no folder; a simulated TRUTH goes with the folder that planemap-run left");
+    }
+    const simulator::SimulatedSource source(simulator::parse_simulator_name(arguments.truth_file));
+    arguments.estimate_file = (folder / "trajectory.txt").string();
+    return {{.poses = source.ground_truth(), .notes = {}}, read_trajectory_file(arguments.estimate_file)};
+}
+
+Pair read_pair(Arguments& arguments) {
+    Pair pair = is_simulated(arguments.truth_file) ? simulated_pair(arguments)
+                                                   : Pair{read_trajectory_file(arguments.truth_file),
+                                                          read_trajectory_file(arguments.estimate_file)};
     require_poses(arguments.truth_file, pair.truth.poses);
     require_poses(arguments.estimate_file, pair.estimate.poses);
     for (const TrajectoryFile* file : {&pair.truth, &pair.estimate})
@@ -156,41 +194,62 @@ Pair read_pair(const Arguments& arguments) {
     return pair;
 }
 
-void run(const Arguments& arguments) {
-    arguments.options.validate();
-    if (arguments.delta && !(*arguments.delta > 0))
-        throw std::invalid_argument("--delta must be greater than 0");
-    const Pair pair = read_pair(arguments);
+/// Throws std::runtime_error where there is no ATE.
+Evaluation evaluated(const Arguments& arguments, const Pair& pair) {
     const Trajectory &truth = pair.truth.poses, &estimate = pair.estimate.poses;
-    const Evaluation evaluation = pair.by_index ? evaluate_by_index(truth, estimate, arguments.options)
-                                                : evaluate(truth, estimate, arguments.options);
+    Evaluation evaluation = pair.by_index ? evaluate_by_index(truth, estimate, arguments.options)
+                                          : evaluate(truth, estimate, arguments.options);
     if (!evaluation.ate && pair.by_index)
         throw std::runtime_error(arguments.estimate_file + ": at least 3 poses are needed");
     if (!evaluation.ate)
         throw std::runtime_error(too_few_pairs(arguments, truth, estimate, evaluation.pairs));
+    return evaluation;
+}
+
+/// The RPE over --delta, as JSON and for people.
+void add_delta(const Arguments& arguments, const Pair& pair, bool as_text, nlohmann::ordered_json& json) {
+    const Delta delta{*arguments.delta, delta_units.at(arguments.delta_unit)};
+    const Trajectory truth = without_repeated_stamps(pair.truth.poses),
+                     estimate = without_repeated_stamps(pair.estimate.poses);
+    const auto error = relative_error(truth, estimate, delta, arguments.options);
+    const std::string why = error ? "" : why_no_relative_error(truth, estimate, delta);
+    char name[40];
+    std::snprintf(name, sizeof(name), "RPE per %g %s", delta.value, arguments.delta_unit.c_str());
+    if (as_text) print_rows(name, error, why);
+    json["rpe_delta"] = to_json(error);
+    if (!error) json["rpe_delta_why"] = why;
+    json["delta"] = delta.value;
+    json["delta_unit"] = arguments.delta_unit;
+}
+
+/// The map in `folder` beside the planes of a simulated truth; nothing for another truth.
+std::optional<evaluation::Judgement> judged_map(const std::string& truth, const std::filesystem::path& folder,
+                                                const Pose& truth_from_map) {
+    const auto planes = evaluation::true_planes(truth, 0);
+    if (!planes) return std::nullopt;
+    return evaluation::judge(*planes, map::read_plane_map(folder / "plane_map.lcmlog"), truth_from_map);
+}
+
+void run(Arguments arguments) {
+    const std::filesystem::path folder = arguments.estimate_file;
+    arguments.options.validate();
+    if (arguments.delta && !(*arguments.delta > 0))
+        throw std::invalid_argument("--delta must be greater than 0");
+    const Pair pair = read_pair(arguments);
+    const Evaluation evaluation = evaluated(arguments, pair);
+    const auto judgement = judged_map(arguments.truth_file, folder, evaluation.ate->truth_from_estimate);
 
     nlohmann::ordered_json json = to_json(evaluation);
     json["truth_format"] = format_name(pair.truth.format);
     json["estimate_format"] = format_name(pair.estimate.format);
     json["matched_by"] = pair.by_index ? "index" : "time";
+    if (judgement) json["map"] = evaluation::figures_of(judgement);
     const bool as_text = arguments.json_file != "-";
     if (as_text && pair.by_index)
         std::printf("KITTI's form has no timestamps: pose i is compared with pose i\n");
     if (as_text) print_table(evaluation);
-    if (arguments.delta) {
-        const Delta delta{*arguments.delta, delta_units.at(arguments.delta_unit)};
-        const Trajectory truth_once = without_repeated_stamps(truth),
-                         estimate_once = without_repeated_stamps(estimate);
-        const auto error = relative_error(truth_once, estimate_once, delta, arguments.options);
-        const std::string why = error ? "" : why_no_relative_error(truth_once, estimate_once, delta);
-        char name[40];
-        std::snprintf(name, sizeof(name), "RPE per %g %s", delta.value, arguments.delta_unit.c_str());
-        if (as_text) print_rows(name, error, why);
-        json["rpe_delta"] = to_json(error);
-        if (!error) json["rpe_delta_why"] = why;
-        json["delta"] = delta.value;
-        json["delta_unit"] = arguments.delta_unit;
-    }
+    if (arguments.delta) add_delta(arguments, pair, as_text, json);
+    if (as_text && judgement) print_judgement(*judgement);
     if (arguments.json_file == "-") {
         print(json.dump(2) + "\n");
     } else if (!arguments.json_file.empty()) {

@@ -9,10 +9,7 @@
 #include "evaluate/plane_judge.hpp"
 #include "simulator/renderer.hpp"
 
-namespace planemap::bench_map {
-
-using evaluation::PlaneRaster;
-using evaluation::TruePlane;
+namespace planemap::evaluation {
 
 /// What of a view counts as seen.
 struct Sight {
@@ -55,4 +52,4 @@ class TruthCollector {
 /// sensor's range; nothing for other inputs.
 std::optional<std::vector<TruePlane>> true_planes(const std::string& input, std::int64_t frames);
 
-}  // namespace planemap::bench_map
+}  // namespace planemap::evaluation

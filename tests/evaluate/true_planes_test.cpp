@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench_map/truth.hpp"
+#include "evaluate/true_planes.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "core/angle.hpp"
 
-namespace planemap::bench_map {
+namespace planemap::evaluation {
 namespace {
 
 using Eigen::Vector3d;
@@ -138,4 +138,4 @@ TEST(TruePlanes, AreKnownOfSimulatedWorldsOnly) {
 }
 
 }  // namespace
-}  // namespace planemap::bench_map
+}  // namespace planemap::evaluation

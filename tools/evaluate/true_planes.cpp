@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench_map/truth.hpp"
+#include "evaluate/true_planes.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 #include "core/geometry/box.hpp"
 #include "simulator/simulated_source.hpp"
 
-namespace planemap::bench_map {
+namespace planemap::evaluation {
 
 namespace {
 
@@ -107,7 +107,7 @@ TruthCollector::TruthCollector(const simulator::World& world) {
             Outline outline{{Ring()}};
             for (std::size_t c = 0; c < 4; ++c)
                 outline.rings[0].push_back(on_plane(group.world_from_plane, corners[i][k + c]));
-            for_each_cell(evaluation::rasterised(outline), [&](int x, int y) {
+            for_each_cell(rasterised(outline), [&](int x, int y) {
                 group.material.mask.set(x - group.material.x0, y - group.material.y0);
             });
         }
@@ -210,4 +210,4 @@ std::optional<std::vector<TruePlane>> true_planes(const std::string& input, std:
     return truth.planes();
 }
 
-}  // namespace planemap::bench_map
+}  // namespace planemap::evaluation
