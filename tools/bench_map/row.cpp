@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "evaluate/soundness_report.hpp"
+
 namespace planemap::bench_map {
 
 namespace {
@@ -65,6 +67,8 @@ constexpr Goal kGoals[] = {
      at_estimated_poses},
     {"the same with true poses", false, 0.15, 2, "angle_error_mean_deg", at_true_poses},
     {"outline IoU", true, 0.9, 3, "outline_iou"},
+    {"doubled area, share", false, 0.01, 3, "doubled_area"},
+    {"floating area, share", false, 0.01, 3, "floating_area"},
     {"leaves explained, share", true, 0.75, 3, "leaves_explained"},
     {"area supported, share", true, 0.9, 3, "area_supported"},
     {"message, kB", false, 8, 1, "message_bytes", kilobytes},
@@ -87,6 +91,7 @@ Json to_json(const Row& row) {
         known(row.run.coverage, [](const Coverage& coverage) { return coverage.leaves_explained; });
     json["area_supported"] =
         known(row.run.coverage, [](const Coverage& coverage) { return coverage.area_supported; });
+    json.update(evaluation::soundness_figures(row.run.soundness));
     json["message_bytes"] = row.run.message_bytes;
     json["memory_bytes"] = row.run.memory_bytes;
     json["update_median_ms"] = benchmark::number(row.run.update_median_ms);
@@ -99,6 +104,7 @@ Json to_json(const Row& row) {
 const benchmark::Table& table() {
     using benchmark::kBar;
     using benchmark::milli;
+    using benchmark::percent;
     static const benchmark::Table kTable{{"sequence", "sequence", -20},
                                          {"poses", "poses", -9},
                                          {"kf", "keyframes", 5},
@@ -120,6 +126,13 @@ const benchmark::Table& table() {
                                          kBar,
                                          {"IoU", "outline_iou", 5, 3},
                                          {"worst", "outline_iou_worst", 5, 3},
+                                         kBar,
+                                         {"dbl %", "doubled_area", 5, 1, percent},
+                                         {"flt %", "floating_area", 5, 1, percent},
+                                         {"expl %", "explained_points", 6, 1, percent},
+                                         {"5 cm", "explained_points_5cm", 5, 1, percent},
+                                         {"rms mm", "point_to_plane_rms_m", 6, 1, milli},
+                                         {"bias", "point_to_plane_bias_m", 5, 1, milli},
                                          kBar,
                                          {"leaves", "leaves_explained", 6, 3},
                                          {"area", "area_supported", 5, 3},

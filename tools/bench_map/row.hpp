@@ -17,7 +17,7 @@ using benchmark::Json;
 
 struct Row {
     std::string sequence;
-    std::string poses;  ///< "estimated" or "true"
+    std::string poses;  ///< "estimated", "true", or "noise1" and so on
     MapRun run;
     std::optional<evaluation::Judgement> judgement;  ///< nothing without the true planes
     std::vector<SurfaceCheck> surfaces;              ///< empty where it was not done

@@ -10,11 +10,14 @@
 #include "messages/convert.hpp"
 #include "messages/decode.hpp"
 #include "messages/module_status.hpp"
+#include "run/depth_watch.hpp"
 #include "run/input.hpp"
 
 namespace planemap::bench_map {
 
 namespace {
+
+constexpr unsigned kNoiseSeed = 1;
 
 MapRun map_run_of(const map::PlaneMapper& mapper, const Histogram& update_ms,
                   const KeyframeTrajectory& poses) {
@@ -46,6 +49,7 @@ SequenceRun run_sequence(const std::string& input_name, const RunOptions& option
         run.keyframes.push_back(messages::from_message(messages::decode<keyframe_t>(message.bytes)));
         run.keyframes.back().features = {};
     });
+    const DepthWatch depth(pipeline.decoder());
     const std::unique_ptr<Input> input = open_input(input_name, bus, options.pipeline.camera);
     feed_all(*input, options.frames, [&](std::int64_t frames) {
         pipeline.settle();
@@ -62,11 +66,19 @@ SequenceRun run_sequence(const std::string& input_name, const RunOptions& option
     run.estimated = map_run_of(shell.mapper(), shell.status().work_cpu_ms(), pipeline.keyframes());
     run.estimated.rebuild_ms = time_rebuild(run.keyframes, run.estimated.poses, map_options);
     if (octomap != nullptr) run.estimated.coverage = coverage_at(run.estimated, octomap->builder());
-    if (!options.true_poses || !run.truth) return run;
-    const KeyframeTrajectory poses = at_poses(run.keyframes, *run.truth);
-    run.true_poses = map_at(run.keyframes, poses, map_options);
-    run.true_poses->rebuild_ms = time_rebuild(run.keyframes, poses, map_options);
-    if (octomap != nullptr) run.true_poses->coverage = coverage_at(*run.true_poses, octomap->builder());
+    run.estimated.soundness = evaluation::soundness(run.estimated.map, depth.posed(pipeline.trajectory()));
+    if (!run.truth) return run;
+    const auto mapped_at = [&](const Trajectory& trajectory) {
+        const KeyframeTrajectory poses = at_poses(run.keyframes, trajectory);
+        MapRun mapped = map_at(run.keyframes, poses, map_options);
+        mapped.rebuild_ms = time_rebuild(run.keyframes, poses, map_options);
+        if (octomap != nullptr) mapped.coverage = coverage_at(mapped, octomap->builder());
+        mapped.soundness = evaluation::soundness(mapped.map, depth.posed(trajectory));
+        return mapped;
+    };
+    if (options.true_poses) run.true_poses = mapped_at(*run.truth);
+    for (const PoseNoise& noise : options.noise)
+        run.noisy.push_back(mapped_at(with_noise(*run.truth, noise, kNoiseSeed)));
     return run;
 }
 

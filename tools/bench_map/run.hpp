@@ -6,6 +6,8 @@
 #include <optional>
 #include <string>
 
+#include "bench_map/pose_noise.hpp"
+#include "evaluate/soundness.hpp"
 #include "map/map.hpp"
 #include "pipeline/pipeline.hpp"
 #include "run/coverage.hpp"
@@ -20,6 +22,7 @@ struct MapRun {
     double update_median_ms = 0, update_p95_ms = 0;  ///< CPU time of the mapper, one keyframe
     double rebuild_ms = 0;                           ///< the same for all keyframes anew, median
     std::optional<Coverage> coverage;                ///< nothing without an OctoMap
+    evaluation::Soundness soundness;                 ///< by views at these poses
 };
 
 /// What one run through a sequence gives.
@@ -29,11 +32,13 @@ struct SequenceRun {
     std::optional<Trajectory> truth;   ///< of the colour camera
     MapRun estimated;                  ///< as planemap-run makes it
     std::optional<MapRun> true_poses;  ///< the same keyframes where they truly were; nothing without truth
+    std::vector<MapRun> noisy;  ///< and where they would be with RunOptions::noise; empty without truth
 };
 
 struct RunOptions {
-    std::int64_t frames = 0;  ///< at most; 0: all
-    bool true_poses = true;   ///< where the input has a truth
+    std::int64_t frames = 0;       ///< at most; 0: all
+    bool true_poses = true;        ///< where the input has a truth
+    std::vector<PoseNoise> noise;  ///< on the truth; a map for each
     pipeline::PipelineOptions pipeline;
 };
 

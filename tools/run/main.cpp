@@ -7,6 +7,7 @@
 #include "core/standard_output.hpp"
 #include "core/trajectory_file.hpp"
 #include "pipeline/pipeline.hpp"
+#include "run/depth_watch.hpp"
 #include "run/input.hpp"
 #include "run/interim.hpp"
 #include "run/outputs.hpp"
@@ -152,6 +153,7 @@ int run(RunOptions options, const nlohmann::ordered_json& about) {
 
     messages::Bus bus("memq://");
     pipeline::Pipeline pipeline(bus, options.pipeline);
+    const DepthWatch depth(pipeline.decoder());
     const std::unique_ptr<Input> input = open_input(options.input, bus, options.pipeline.camera, frames);
     ResultFolder folder(options.output, result_names(options.output, *input));
     warn(folder.take_notes());
@@ -167,7 +169,7 @@ int run(RunOptions options, const nlohmann::ordered_json& about) {
     for (const std::string& line : input->complaints()) spdlog::warn("{}", line);
     bus.complaints().log_totals();
 
-    const Outputs outputs = write_outputs(folder, options.input, *input, pipeline, clock, about);
+    const Outputs outputs = write_outputs(folder, options.input, *input, pipeline, depth, clock, about);
     warn(folder.take_notes());
     if (!outputs.report.is_null()) warn(outputs.report.at("warnings").get<std::vector<std::string>>());
     std::vector<std::string> problems = problems_of(options, *input, pipeline, folder, outputs);

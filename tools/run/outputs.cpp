@@ -7,10 +7,12 @@
 #include <nlohmann/json.hpp>
 
 #include "core/files.hpp"
+#include "evaluate/soundness_report.hpp"
 #include "exports/exports.hpp"
 #include "map/map_file.hpp"
 #include "pipeline/pipeline.hpp"
 #include "run/accuracy.hpp"
+#include "run/depth_watch.hpp"
 #include "run/input.hpp"
 #include "run/losses.hpp"
 #include "run/report.hpp"
@@ -83,7 +85,7 @@ std::vector<Result> essential_results(pipeline::Pipeline& pipeline) {
 namespace {
 
 Json report_of(const std::string& input_name, const Input& input, pipeline::Pipeline& pipeline,
-               const RunClock& clock, const Json& about) {
+               const DepthWatch& depth, const RunClock& clock, const Json& about) {
     const PlaneMap& map = pipeline.map().mapper().map();
     const auto& estimates = pipeline.estimates();
     const std::int64_t tracked = tracked_frames(pipeline);
@@ -112,6 +114,8 @@ Json report_of(const std::string& input_name, const Input& input, pipeline::Pipe
     report["complaints"] = complaints;
     add_sizes(pipeline, input.frames(), report);
     add_accuracy(input, pipeline, report);
+    report.update(
+        evaluation::soundness_figures(evaluation::soundness(map, depth.posed(pipeline.trajectory()))));
     std::vector<std::string> warnings =
         warnings_of(estimates, pipeline.given_poses() != nullptr, pipeline.reason_lost(), report);
     for (const std::string& remark : remarks_of(pipeline)) warnings.push_back(remark);
@@ -187,7 +191,8 @@ std::vector<std::string> result_names(const std::filesystem::path& folder, const
 }
 
 Outputs write_outputs(ResultFolder& folder, const std::string& input_name, const Input& input,
-                      pipeline::Pipeline& pipeline, const RunClock& clock, const Json& about) {
+                      pipeline::Pipeline& pipeline, const DepthWatch& depth, const RunClock& clock,
+                      const Json& about) {
     Outputs outputs;
     const auto attempt = [&](const std::function<void()>& action) {
         try {
@@ -203,7 +208,7 @@ Outputs write_outputs(ResultFolder& folder, const std::string& input_name, const
             if (attempt([&] { folder.make(result); })) outputs.files.push_back(result.name);
     };
     make(essential_results(pipeline));  // before the report, which takes a while
-    attempt([&] { outputs.report = report_of(input_name, input, pipeline, clock, about); });
+    attempt([&] { outputs.report = report_of(input_name, input, pipeline, depth, clock, about); });
     make(further_results(input, pipeline, outputs.report));
 
     const bool whole = outputs.failures.empty(), holds_earlier = folder.holds_earlier();

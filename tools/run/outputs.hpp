@@ -11,6 +11,7 @@
 
 namespace planemap {
 
+class DepthWatch;
 class Input;
 namespace pipeline {
 class Pipeline;
@@ -56,7 +57,7 @@ struct Outputs {
 /// better one (why_not_replace()). Else they are set aside in a folder of their own, or, if
 /// no frame was tracked, dropped. Without an earlier run they are put in place, whole or not.
 Outputs write_outputs(ResultFolder& folder, const std::string& input_name, const Input& input,
-                      pipeline::Pipeline& pipeline, const RunClock& clock,
+                      pipeline::Pipeline& pipeline, const DepthWatch& depth, const RunClock& clock,
                       const nlohmann::ordered_json& about);
 
 }  // namespace planemap

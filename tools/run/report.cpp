@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "core/files.hpp"
+#include "evaluate/soundness_report.hpp"
 #include "run/losses.hpp"
 #include "run/report_text.hpp"
 #include "run/size_report.hpp"
@@ -132,6 +133,7 @@ std::string report_markdown(const Json& report) {
         add_tracking(report, out);
         out += losses_markdown(report);
         out += sizes_markdown(report);
+        if (report.contains("soundness")) out += evaluation::soundness_markdown(report);
         add_times(report, out);
         return out;
     } catch (const Json::exception& error) {

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Whether a map can be believed, by the depth that it was made of alone: surfaces that stand in it twice,
+// surfaces that float where the camera looked through, and readings that no surface explains. Nothing here
+// asks only what lies near a plane, as figures do that a doubled or a floating surface cannot worsen.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/plane_map.hpp"
+#include "evaluate/depth_views.hpp"
+
+namespace planemap::evaluation {
+
+/// A view and where it was.
+struct PosedView {
+    const DepthView* view = nullptr;
+    Pose world_from_color = Pose::Identity();
+};
+
+struct SoundnessLimits {
+    double doubled_m = 0.15, doubled_deg = 12;         ///< of two outlines that say one surface twice
+    int least_views = 3;                               ///< that see both: then they are two surfaces
+    double behind_m = 0.05, behind_sigmas = 3;         ///< of a reading that was seen through a plane
+    double explained_m = 0.015, explained_sigmas = 3;  ///< of a reading to the plane that explains it
+    double near_m = 0.05;                              ///< of a reading that lies near a plane
+};
+
+/// Distances of readings to the planes that explain them.
+struct Residuals {
+    std::int64_t count = 0;
+    double mean_m = 0;  ///< positive: the readings lie before the plane
+    double rms_m = 0;
+};
+
+/// Two planes that say one surface.
+struct DoubledPair {
+    int id_a = -1, id_b = -1;
+    double area_m2 = 0;  ///< of the smaller one's outline that the other says again
+};
+
+struct PlaneSoundness {
+    int id = -1;
+    double area_m2 = 0;      ///< of the outline
+    double seen_m2 = 0;      ///< of it, what a view has a reading on the ray of
+    double floating_m2 = 0;  ///< of that, what more than half of these views looked through
+    Residuals residuals;     ///< of the readings that the plane explains, as the nearest
+};
+
+struct RangeResiduals {
+    double from_m = 0, to_m = 0;  ///< depth of the readings
+    Residuals residuals;
+};
+
+struct Soundness {
+    std::size_t views = 0;
+    double area_m2 = 0;
+    double doubled_m2 = 0;  ///< each point of a smaller outline once
+    double seen_m2 = 0, floating_m2 = 0;
+    std::int64_t readings = 0;
+    std::int64_t explained = 0;  ///< within max(1.5 cm, 3 sigma) of a plane, on its outline
+    std::int64_t near = 0;       ///< within 5 cm
+    Residuals residuals;
+    std::vector<PlaneSoundness> planes;    ///< in the map's order
+    std::vector<DoubledPair> doubled;      ///< from the largest
+    std::vector<RangeResiduals> by_range;  ///< steps of 1 m, those with readings
+
+    /// Shares; nothing where there is nothing to have a share of.
+    std::optional<double> doubled_share() const;
+    std::optional<double> floating_share() const;
+    std::optional<double> explained_share() const;
+    std::optional<double> near_share() const;
+};
+
+/// Holds a map against views, all in one world. Outlines are compared on cells of 2.5 cm.
+/// - doubled: cells of the smaller of two outlines that lie within 15 cm of the other, on its outline, where
+///   the two face the same way within 12 deg. Two that three or more views saw side by side are two surfaces
+///   (a board before a wall): readings within 2 sigma of either that are neighbours in the image, where the
+///   planes are 6 sigma apart, so that noise does not take one for the other.
+/// - floating: cells for which more than half of the views that have a reading on their ray have it more than
+///   max(5 cm, 3 sigma) behind the plane.
+Soundness soundness(const PlaneMap& map, const std::vector<PosedView>& views,
+                    const SoundnessLimits& limits = {});
+
+}  // namespace planemap::evaluation

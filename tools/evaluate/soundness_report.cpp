@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "evaluate/soundness_report.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "benchmark/table.hpp"
+
+namespace planemap::evaluation {
+
+namespace {
+
+using benchmark::Json;
+using benchmark::text;
+
+Json figure(const std::optional<double>& value) {
+    return value ? Json(*value) : Json(nullptr);
+}
+
+Json to_json(const Residuals& residuals) {
+    if (residuals.count == 0) return {{"readings", 0}, {"bias_m", nullptr}, {"rms_m", nullptr}};
+    return {{"readings", residuals.count}, {"bias_m", residuals.mean_m}, {"rms_m", residuals.rms_m}};
+}
+
+Json planes_of(const Soundness& soundness) {
+    Json planes = Json::array();
+    for (const PlaneSoundness& plane : soundness.planes) {
+        Json& row = planes.emplace_back(Json{{"id", plane.id},
+                                             {"area_m2", plane.area_m2},
+                                             {"seen_m2", plane.seen_m2},
+                                             {"floating_m2", plane.floating_m2}});
+        row.update(to_json(plane.residuals));
+    }
+    return planes;
+}
+
+std::string percent_text(const Json& share) {
+    return share.is_number() ? text("%.1f %%", 100 * share.get<double>()) : "nothing to measure";
+}
+
+}  // namespace
+
+Json soundness_figures(const Soundness& soundness) {
+    Json pairs = Json::array(), ranges = Json::array();
+    for (const DoubledPair& pair : soundness.doubled)
+        pairs.push_back({{"planes", {pair.id_a, pair.id_b}}, {"area_m2", pair.area_m2}});
+    for (const RangeResiduals& range : soundness.by_range) {
+        Json& row = ranges.emplace_back(Json{{"from_m", range.from_m}, {"to_m", range.to_m}});
+        row.update(to_json(range.residuals));
+    }
+    const bool measured = soundness.residuals.count > 0;
+    return {{"doubled_area", figure(soundness.doubled_share())},
+            {"floating_area", figure(soundness.floating_share())},
+            {"explained_points", figure(soundness.explained_share())},
+            {"explained_points_5cm", figure(soundness.near_share())},
+            {"point_to_plane_rms_m", measured ? Json(soundness.residuals.rms_m) : Json(nullptr)},
+            {"point_to_plane_bias_m", measured ? Json(soundness.residuals.mean_m) : Json(nullptr)},
+            {"soundness",
+             {{"views", soundness.views},
+              {"readings", soundness.readings},
+              {"area_m2", soundness.area_m2},
+              {"doubled_m2", soundness.doubled_m2},
+              {"seen_m2", soundness.seen_m2},
+              {"floating_m2", soundness.floating_m2},
+              {"doubled_pairs", pairs},
+              {"by_range", ranges},
+              {"planes", planes_of(soundness)}}}};
+}
+
+std::string soundness_markdown(const Json& report) {
+    const Json& details = report.at("soundness");
+    std::string out = "\n## Soundness\n\nHeld against " + details.at("readings").dump() +
+                      " depth readings of " + details.at("views").dump() +
+                      " views spread over the run, at their poses in trajectory.txt:\n\n"
+                      "| what | share |\n| --- | ---: |\n";
+    const auto row = [&](const char* what, const char* key) {
+        out += std::string("| ") + what + " | " + percent_text(report.at(key)) + " |\n";
+    };
+    row("readings within max(1.5 cm, 3 sigma) of a plane's outline", "explained_points");
+    row("readings within 5 cm of one", "explained_points_5cm");
+    row("outlines' area that another plane says again (15 cm, 12 deg)", "doubled_area");
+    row("outlines' seen area that most views looked through", "floating_area");
+    if (report.at("point_to_plane_rms_m").is_number()) {
+        out += text(
+            "\nExplained readings lie %.1f mm from their plane (RMS), %+.1f mm in the mean (+: before it).\n",
+            1e3 * report.at("point_to_plane_rms_m").get<double>(),
+            1e3 * report.at("point_to_plane_bias_m").get<double>());
+    }
+    return out;
+}
+
+}  // namespace planemap::evaluation
