@@ -112,6 +112,8 @@ void CameraInfo::validate() const {
     check_ratio(depth.fy, color.fy, "fy", errors);
     errors.require(is_valid(color_from_depth), "color_from_depth", "not a rigid transform",
                    "a rigid transform");
+    errors.require(!body_from_camera || is_valid(*body_from_camera), "body_from_camera",
+                   "not a rigid transform", "a rigid transform");
     check_units(*this, errors);
     check_depth(noise, depth_min_m, depth_max_m, errors);
     errors.throw_if_any();
@@ -121,7 +123,10 @@ bool operator==(const CameraInfo& a, const CameraInfo& b) {
     return a.serial == b.serial && a.depth == b.depth && a.color == b.color && a.registered == b.registered &&
            a.color_from_depth.matrix() == b.color_from_depth.matrix() &&
            a.depth_units_per_metre == b.depth_units_per_metre && a.depth_min_m == b.depth_min_m &&
-           a.depth_max_m == b.depth_max_m && a.noise == b.noise;
+           a.depth_max_m == b.depth_max_m && a.noise == b.noise &&
+           a.body_from_camera.has_value() == b.body_from_camera.has_value() &&
+           a.body_from_camera.value_or(Pose::Identity()).matrix() ==
+               b.body_from_camera.value_or(Pose::Identity()).matrix();
 }
 
 }  // namespace planemap

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "core/geometry/pose.hpp"
@@ -68,6 +69,9 @@ struct CameraInfo {
     double depth_units_per_metre = 1000;       ///< raw depth / this = metres
     double depth_min_m = 0.3, depth_max_m = 8.0;  ///< readings outside are not trusted
     DepthNoise noise;
+    /// How the camera is mounted on a robot whose body frame is x forward, y left, z up; none: it was not
+    /// told.
+    std::optional<Pose> body_from_camera;
 
     double metres(std::uint16_t raw) const { return raw / depth_units_per_metre; }
     /// Throws std::invalid_argument that names every bad field (sizes 1 to 8192, what CameraLimits says, the

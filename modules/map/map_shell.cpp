@@ -97,7 +97,7 @@ void MapShell::tell_losses() {
 }
 
 void MapShell::publish() {
-    bus_.publish(messages::channels::kMap, messages::to_message(mapper_.map(), seq_++));
+    bus_.publish(messages::channels::kMap, messages::to_message(mapper_.map(), seq_++, bus_.session()));
     published_us_ = messages::now_us();
     status_.published();
     unwritten_ = true;
@@ -118,7 +118,7 @@ int MapShell::poll() {
     watch_.tell(messages::now_us());
     if (published_us_ != 0 && messages::now_us() - published_us_ >= messages::kRepeat_us) {
         // For those who come late while the camera stands still: the same message again, which is no work.
-        bus_.publish(messages::channels::kMap, messages::to_message(mapper_.map(), seq_ - 1));
+        bus_.publish(messages::channels::kMap, messages::to_message(mapper_.map(), seq_ - 1, bus_.session()));
         published_us_ = messages::now_us();
     }
     const std::int64_t period = write_error_.empty() ? kWritePeriodUs : kRetryPeriodUs;

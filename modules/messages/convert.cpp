@@ -171,8 +171,10 @@ std::int64_t checked_utime(std::int64_t utime, const char* field) {
     return utime;
 }
 
-camera_info_t to_message(const CameraInfo& camera, std::int64_t utime, std::int32_t seq) {
+camera_info_t to_message(const CameraInfo& camera, std::int64_t utime, std::int32_t seq,
+                         std::int64_t session) {
     camera_info_t message;
+    message.session = session;
     message.utime = utime;
     message.seq = seq;
     message.serial = camera.serial;
@@ -186,6 +188,8 @@ camera_info_t to_message(const CameraInfo& camera, std::int64_t utime, std::int3
     message.noise_base_m = camera.noise.base_m;
     message.noise_quadratic_per_m = camera.noise.quadratic_per_m;
     message.noise_offset_m = camera.noise.offset_m;
+    message.body_known = camera.body_from_camera ? 1 : 0;
+    message.body_from_camera = to_message(camera.body_from_camera.value_or(Pose::Identity()));
     return message;
 }
 
@@ -201,6 +205,8 @@ CameraInfo from_message(const camera_info_t& message) {
     camera.depth_min_m = message.depth_min_m;
     camera.depth_max_m = message.depth_max_m;
     camera.noise = {message.noise_base_m, message.noise_quadratic_per_m, message.noise_offset_m};
+    if (message.body_known != 0)
+        camera.body_from_camera = from_message(message.body_from_camera, "camera_info.body_from_camera");
     try {
         camera.validate();
     } catch (const std::invalid_argument& error) {
@@ -209,8 +215,9 @@ CameraInfo from_message(const camera_info_t& message) {
     return camera;
 }
 
-planar_regions_t to_message(const FrameRegions& regions, std::int32_t seq) {
+planar_regions_t to_message(const FrameRegions& regions, std::int32_t seq, std::int64_t session) {
     planar_regions_t message;
+    message.session = session;
     message.utime = regions.utime;
     message.seq = seq;
     message.regions = to_messages(regions.regions);
@@ -466,8 +473,9 @@ std::optional<Eigen::Vector3d> shared_point(const MapPlane& a, const MapPlane& b
 
 }  // namespace
 
-plane_map_t to_message(const PlaneMap& map, std::int32_t seq) {
+plane_map_t to_message(const PlaneMap& map, std::int32_t seq, std::int64_t session) {
     plane_map_t message;
+    message.session = session;
     message.utime = map.utime;
     message.seq = seq;
     message.revision = map.revision;
@@ -482,8 +490,8 @@ plane_map_t to_message(const PlaneMap& map, std::int32_t seq) {
         map_line_t& m = message.lines.emplace_back();
         m.plane_a = index(line.plane_a);
         m.plane_b = index(line.plane_b);
-        m.from = static_cast<float>((line.from.cast<double>() - shared->origin).dot(shared->direction));
-        m.to = static_cast<float>((line.to.cast<double>() - shared->origin).dot(shared->direction));
+        m.start = static_cast<float>((line.from.cast<double>() - shared->origin).dot(shared->direction));
+        m.stop = static_cast<float>((line.to.cast<double>() - shared->origin).dot(shared->direction));
     }
     message.n_lines = count32(message.lines.size());
     for (const IntersectionPoint& point : map.points) {
@@ -517,11 +525,12 @@ PlaneMap from_message(const plane_map_t& message) {
                        &b = plane_at(line.plane_b, "line.plane_b");
         const auto shared = shared_line(a, b);
         require(shared.has_value(), "line", "joins parallel planes");
-        require(std::isfinite(line.from) && std::isfinite(line.to), "line", "has an end that is not finite");
+        require(std::isfinite(line.start) && std::isfinite(line.stop), "line",
+                "has an end that is not finite");
         const auto at = [&](float along) -> Eigen::Vector3f {
             return (shared->origin + static_cast<double>(along) * shared->direction).cast<float>();
         };
-        map.lines.push_back({a.id, b.id, at(line.from), at(line.to)});
+        map.lines.push_back({a.id, b.id, at(line.start), at(line.stop)});
     }
     for (const map_point_t& point : message.points) {
         const MapPlane &a = plane_at(point.planes[0], "point.planes"),

@@ -26,7 +26,8 @@ namespace planemap::messages {
 /// The stamp of a message; throws MessageError naming the field if it is beyond kFarthestUtime.
 std::int64_t checked_utime(std::int64_t utime, const char* field);
 
-camera_info_t to_message(const CameraInfo& camera, std::int64_t utime, std::int32_t seq);
+camera_info_t to_message(const CameraInfo& camera, std::int64_t utime, std::int32_t seq,
+                         std::int64_t session = 0);
 CameraInfo from_message(const camera_info_t& message);
 
 /// The planar regions of one depth image, camera frame.
@@ -34,7 +35,7 @@ struct FrameRegions {
     std::int64_t utime = 0;  ///< of the depth image
     std::vector<PlanarRegion> regions;
 };
-planar_regions_t to_message(const FrameRegions& regions, std::int32_t seq);
+planar_regions_t to_message(const FrameRegions& regions, std::int32_t seq, std::int64_t session = 0);
 FrameRegions from_message(const planar_regions_t& message);
 
 odometry_t to_message(const OdometryEstimate& estimate, std::int32_t seq, std::int64_t session = 0);
@@ -51,7 +52,7 @@ KeyframeTrajectory from_message(const trajectory_t& message);
 /// The map in 69 bytes a plane, 2 an outline ring and 4 an outline vertex: the very values that PlaneMap
 /// holds, so nothing is lost but the ends of lines and points, which are rounded to single precision along
 /// their planes.
-plane_map_t to_message(const PlaneMap& map, std::int32_t seq);
+plane_map_t to_message(const PlaneMap& map, std::int32_t seq, std::int64_t session = 0);
 PlaneMap from_message(const plane_map_t& message);
 
 /// How the images of a frame are sent.

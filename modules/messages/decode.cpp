@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "messages/decode.hpp"
 
+#include <algorithm>
 #include <bot_core/images_t.hpp>
 #include <bot_core/pose_t.hpp>
 #include <exception>
@@ -120,10 +121,12 @@ void walk(Walker& w, const camera_info_t*) {
     w.skip(8 + 4, "utime");
     w.string("serial");
     w.skip(2 * (8 + 32) + 1 + kTransform + 6 * 8, "intrinsics");
+    w.skip(8 + 1 + kTransform, "body_from_camera");
 }
 void walk(Walker& w, const planar_regions_t*) {
     w.skip(8 + 4, "utime");
     walk_regions(w);
+    w.skip(8, "session");
 }
 void walk(Walker& w, const odometry_t*) {
     w.skip(8 + 8 + 4 + 1 + kTransform + 4 + kTransform + 36 * 8 + 12 + 8, "odometry");
@@ -154,19 +157,88 @@ void walk(Walker& w, const plane_map_t*) {
     }
     w.array(w.length("n_lines"), 4 + 8, "lines");
     w.array(w.length("n_points"), 6, "points");
+    w.skip(8, "session");
 }
 void walk(Walker& w, const map_size_t*) {
-    w.skip(8 + 4 + 8 * 6 + 8, "sizes");
+    w.skip(8 + 4 + 8 * 6 + 8 + 8, "sizes");
 }
 void walk(Walker& w, const module_status_t*) {
     w.skip(8 + 4, "utime");
     w.string("module");
     w.skip(1, "state");
     w.string("text");
-    w.skip(8 + 4 + 4 + 5 * 8, "counters");
+    w.skip(8 + 4 + 4 + 5 * 8 + 8 + 4 + 4, "counters");
+}
+
+/// A type as an earlier planemap had it: today's has more fields at its end, nothing else is different on the
+/// wire.
+struct Earlier {
+    std::uint64_t fingerprint = 0;
+    std::vector<std::uint8_t> missing;  ///< what today's message has at its end
+};
+
+std::vector<std::uint8_t> zeros(std::size_t count) {
+    return std::vector<std::uint8_t>(count, 0);
+}
+
+template <typename T>
+std::vector<Earlier> earlier(const T*) {
+    return {};
+}
+std::vector<Earlier> earlier(const camera_info_t*) {
+    std::vector<std::uint8_t> unknown = zeros(8 + 1 + kTransform);
+    constexpr std::size_t kW = 8 + 1 + 3 * 8;  // of the identity's quaternion, 1.0
+    unknown[kW] = 0x3f;
+    unknown[kW + 1] = 0xf0;
+    return {{0xbb0361eb1a14a65e, unknown}};
+}
+std::vector<Earlier> earlier(const planar_regions_t*) {
+    return {{0xaedd3398cc393ca2, zeros(8)}};
+}
+std::vector<Earlier> earlier(const plane_map_t*) {
+    return {{0xad69623d7bd0a548, zeros(8)}};
+}
+std::vector<Earlier> earlier(const map_size_t*) {
+    return {{0xcc3bbfa6fd82ffe7, zeros(8)}};
+}
+std::vector<Earlier> earlier(const module_status_t*) {
+    std::vector<std::uint8_t> unmeasured = zeros(8 + 4 + 4);
+    for (const std::size_t age : {8, 12}) {  // -1.0f
+        unmeasured[age] = 0xbf;
+        unmeasured[age + 1] = 0x80;
+    }
+    return {{0xd375fa85ae3e81e7, unmeasured}};
+}
+
+/// A message of the type as it was earlier, as today's has it.
+std::vector<std::uint8_t> completed(std::span<const std::uint8_t> bytes, std::uint64_t fingerprint,
+                                    const std::vector<std::uint8_t>& missing) {
+    std::vector<std::uint8_t> all(bytes.begin(), bytes.end());
+    for (std::size_t i = 0; i < 8; ++i) all[i] = static_cast<std::uint8_t>(fingerprint >> (56 - 8 * i));
+    all.insert(all.end(), missing.begin(), missing.end());
+    return all;
 }
 
 }  // namespace
+
+std::uint64_t fingerprint_of(std::span<const std::uint8_t> bytes) {
+    std::uint64_t fingerprint = 0;
+    for (std::size_t i = 0; i < 8 && bytes.size() >= 8; ++i) fingerprint = fingerprint << 8 | bytes[i];
+    return fingerprint;
+}
+
+template <typename T>
+std::vector<std::uint64_t> fingerprints() {
+    std::vector<std::uint64_t> all = {static_cast<std::uint64_t>(T::getHash())};
+    for (const Earlier& type : earlier(static_cast<const T*>(nullptr))) all.push_back(type.fingerprint);
+    return all;
+}
+
+template <typename T>
+bool is_a(std::span<const std::uint8_t> bytes) {
+    const std::vector<std::uint64_t> known = fingerprints<T>();
+    return std::find(known.begin(), known.end(), fingerprint_of(bytes)) != known.end();
+}
 
 template <typename T>
 T decode(std::span<const std::uint8_t> bytes) {
@@ -175,10 +247,12 @@ T decode(std::span<const std::uint8_t> bytes) {
         throw MessageError(type + ": " + std::to_string(bytes.size()) + " bytes, not even a fingerprint");
     if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
         throw MessageError(type + ": over 2 GiB");
-    std::uint64_t fingerprint = 0;
-    for (int i = 0; i < 8; ++i) fingerprint = fingerprint << 8 | bytes[static_cast<std::size_t>(i)];
-    if (fingerprint != static_cast<std::uint64_t>(T::getHash()))
+    const std::uint64_t fingerprint = fingerprint_of(bytes), today = static_cast<std::uint64_t>(T::getHash());
+    if (fingerprint != today) {
+        for (const Earlier& then : earlier(static_cast<const T*>(nullptr)))
+            if (fingerprint == then.fingerprint) return decode<T>(completed(bytes, today, then.missing));
         throw MessageError(type + ": the fingerprint is another type's");
+    }
     try {
         Walker walker(bytes.subspan(8));
         walk(walker, static_cast<const T*>(nullptr));
@@ -193,16 +267,24 @@ T decode(std::span<const std::uint8_t> bytes) {
     }
 }
 
-template bot_core::images_t decode(std::span<const std::uint8_t>);
-template bot_core::pose_t decode(std::span<const std::uint8_t>);
-template kinect::frame_msg_t decode(std::span<const std::uint8_t>);
-template camera_info_t decode(std::span<const std::uint8_t>);
-template planar_regions_t decode(std::span<const std::uint8_t>);
-template odometry_t decode(std::span<const std::uint8_t>);
-template keyframe_t decode(std::span<const std::uint8_t>);
-template trajectory_t decode(std::span<const std::uint8_t>);
-template plane_map_t decode(std::span<const std::uint8_t>);
-template map_size_t decode(std::span<const std::uint8_t>);
-template module_status_t decode(std::span<const std::uint8_t>);
+/// For each type that decode.hpp names.
+#define PLANEMAP_DECODES(T)                               \
+    template T decode<T>(std::span<const std::uint8_t>);  \
+    template bool is_a<T>(std::span<const std::uint8_t>); \
+    template std::vector<std::uint64_t> fingerprints<T>();
+
+PLANEMAP_DECODES(bot_core::images_t)
+PLANEMAP_DECODES(bot_core::pose_t)
+PLANEMAP_DECODES(kinect::frame_msg_t)
+PLANEMAP_DECODES(camera_info_t)
+PLANEMAP_DECODES(planar_regions_t)
+PLANEMAP_DECODES(odometry_t)
+PLANEMAP_DECODES(keyframe_t)
+PLANEMAP_DECODES(trajectory_t)
+PLANEMAP_DECODES(plane_map_t)
+PLANEMAP_DECODES(map_size_t)
+PLANEMAP_DECODES(module_status_t)
+
+#undef PLANEMAP_DECODES
 
 }  // namespace planemap::messages

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "messages/error.hpp"
 
@@ -28,6 +29,19 @@ class module_status_t;
 }  // namespace planemap
 
 namespace planemap::messages {
+
+/// The fingerprints of messages that decode<T>() reads: today's first, then those of the type as earlier
+/// planemaps wrote it into files that users keep. Of what it lacked then, decode() says what is true of such
+/// a message: session 0, not measured, not known.
+template <typename T>
+std::vector<std::uint64_t> fingerprints();
+
+/// The first eight bytes of a message, which tell its type; 0 if there are fewer.
+std::uint64_t fingerprint_of(std::span<const std::uint8_t> bytes);
+
+/// Whether decode<T>() takes the bytes for a message of its type.
+template <typename T>
+bool is_a(std::span<const std::uint8_t> bytes);
 
 /// Decodes one message of the type. Throws MessageError when the fingerprint is another type's, when a length
 /// is negative or larger than the bytes that are there, or when bytes are missing or left over. Never

@@ -115,6 +115,8 @@ module_status_t ModuleStatus::message(std::int64_t now_us, bool stopped) const {
     module_status_t m;
     m.utime = now_us;
     m.seq = seq_;
+    m.session = 0;
+    m.age_median_ms = m.age_p95_ms = -1;
     m.module = module_;
     m.text = full_text();
     m.rate_hz = seconds > 0 ? static_cast<double>(inputs) / seconds : 0;
@@ -136,6 +138,7 @@ bool ModuleStatus::publish_if_due(Bus& bus, std::int64_t now_us, bool stopped) {
     bus_trouble_ = bus.trouble();
     is_connected_ = bus.connected();
     last_ = message(now_us, stopped);
+    last_.session = bus.session();
     bus.publish(channel_, last_);
     ++seq_;
     if (published_ > window_published_)

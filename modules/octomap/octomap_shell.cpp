@@ -166,6 +166,7 @@ void OctomapShell::publish(const OctomapState& state) {
     map_size_t message;
     message.utime = state.utime;
     message.seq = seq_++;
+    message.session = bus_.session();
     message.resolution_m = resolution_m_;
     message.n_nodes = static_cast<std::int64_t>(state.sizes.nodes);
     message.n_occupied_leaves = static_cast<std::int64_t>(state.sizes.occupied_leaves);

@@ -24,7 +24,7 @@ void SegmentationShell::on_frame(const messages::Frame& frame) {
         for (const PlanarRegion& region : segmentation_.regions)
             regions.regions.push_back(camera_from_depth * region);
     }
-    bus_.publish(messages::channels::kRegions, messages::to_message(regions, seq_++));
+    bus_.publish(messages::channels::kRegions, messages::to_message(regions, seq_++, bus_.session()));
     status_.published();
     status_.set_text(std::to_string(regions.regions.size()) + " regions");
 }

@@ -129,7 +129,7 @@ bool SensorShell::camera_is_due(std::int64_t utime) const {
 
 void SensorShell::publish_camera(std::int64_t utime) {
     bus_.publish(messages::channels::kCameraInfo,
-                 messages::to_message(source_->camera(), utime, camera_seq_++));
+                 messages::to_message(source_->camera(), utime, camera_seq_++, bus_.session()));
     last_camera_utime_ = utime;
     last_camera_wall_us_ = messages::now_us();
 }

@@ -39,6 +39,30 @@ TEST(Convert, CameraRoundTrip) {
     EXPECT_TRUE(from_message(to_message(camera, 1, 2)) == camera);
 }
 
+TEST(Convert, HowACameraIsMountedIsKnownOrNot) {
+    CameraInfo camera = test::sample_camera();
+    EXPECT_FALSE(from_message(to_message(camera, 1, 2)).body_from_camera);
+    camera.body_from_camera = make_pose({0.1, 0, 0.3}, Eigen::Quaterniond(0.5, -0.5, 0.5, -0.5));
+    const CameraInfo back = from_message(to_message(camera, 1, 2));
+    EXPECT_EQ(back, camera);
+    ASSERT_TRUE(back.body_from_camera);
+    EXPECT_TRUE(back.body_from_camera->isApprox(*camera.body_from_camera, 1e-12));
+    camera_info_t message = to_message(camera, 1, 2);
+    message.body_from_camera.rotation[0] = 7;
+    EXPECT_THROW(from_message(message), MessageError);
+    message.body_known = 0;  // then it means nothing
+    EXPECT_FALSE(from_message(message).body_from_camera);
+}
+
+TEST(Convert, EachMessageSaysItsSession) {
+    EXPECT_EQ(to_message(test::sample_camera(), 1, 2, 5).session, 5);
+    EXPECT_EQ(to_message(FrameRegions{1, {}}, 2, 5).session, 5);
+    EXPECT_EQ(to_message(OdometryEstimate(), 2, 5).session, 5);
+    EXPECT_EQ(to_message(test::sample_keyframe(), 2, 5).session, 5);
+    EXPECT_EQ(to_message(KeyframeTrajectory(), 2, 5).session, 5);
+    EXPECT_EQ(to_message(PlaneMap(), 2, 5).session, 5);
+}
+
 TEST(Convert, ACameraWhoseResolutionsAreTooFarApartIsRefusedWithTheReason) {
     CameraInfo camera;
     camera.depth = {320, 288, 250, 250, 160, 144};

@@ -117,6 +117,19 @@ TEST(Decode, AnotherTypesFingerprintIsAnError) {
     EXPECT_THROW(decode<keyframe_t>(bytes), MessageError);
 }
 
+/// A message of a type that grew is bounded like any other.
+TEST(Decode, AnEarlierTypesMessageIsTakenAndADamagedOneIsRefused) {
+    std::vector<std::uint8_t> earlier = encoded(to_message(sample_map(), 7));
+    earlier.resize(earlier.size() - 8);  // session
+    const std::uint64_t fingerprint = fingerprints<plane_map_t>().at(1);
+    for (std::size_t i = 0; i < 8; ++i) earlier[i] = static_cast<std::uint8_t>(fingerprint >> (56 - 8 * i));
+    EXPECT_EQ(encoded(decode<plane_map_t>(earlier)), encoded(to_message(sample_map(), 7)));
+    EXPECT_TRUE(is_a<plane_map_t>(earlier));
+    EXPECT_FALSE(is_a<camera_info_t>(earlier));
+    for (std::size_t length = 0; length < earlier.size(); ++length)
+        EXPECT_THROW(decode<plane_map_t>(std::span(earlier).first(length)), MessageError) << length;
+}
+
 TEST(Decode, HugeLengthIsRefusedBeforeAllocation) {
     std::vector<std::uint8_t> bytes = encoded(to_message(sample_trajectory(), 1));
     const std::size_t at = 8 + 8 + 12 + 56;  // n_keyframes

@@ -90,11 +90,6 @@ class SensorInput : public Input {
     std::optional<Trajectory> truth_;  ///< of a folder
 };
 
-template <typename T>
-bool is_a(const messages::LogEvent& event) {
-    return fingerprint(event) == static_cast<std::uint64_t>(T::getHash());
-}
-
 /// Why a message of the type cannot be used; empty if it can.
 template <typename T>
 std::string why_unusable(const messages::LogEvent& event) {
@@ -131,9 +126,9 @@ class LogInput : public Input {
         for (messages::LogEvent event;
              !((described || has_camera) && !channel_.empty()) && ahead.next(event);) {
             contents.add(event);
-            if (channel_.empty() && is_a<bot_core::images_t>(event) && has_depth(event))
+            if (channel_.empty() && messages::is_a<bot_core::images_t>(event.bytes) && has_depth(event))
                 channel_ = event.channel;
-            if (described || !is_a<camera_info_t>(event)) continue;
+            if (described || !messages::is_a<camera_info_t>(event.bytes)) continue;
             const std::string why = why_unusable<camera_info_t>(event);
             if (why.empty()) {
                 described = true;
@@ -187,7 +182,7 @@ class LogInput : public Input {
                 }
                 if (follow_camera_ && event.channel == messages::channels::kCameraInfo)
                     bus_.publish_bytes(messages::channels::kCameraInfo, event.bytes);
-                if (is_a<bot_core::images_t>(event)) unread_.add(event);
+                if (messages::is_a<bot_core::images_t>(event.bytes)) unread_.add(event);
             }
         } catch (const std::runtime_error& error) {  // a disk that fails: what there is so far is kept
             failure_ = error.what();

@@ -19,24 +19,39 @@
 #include <planemap/plane_map_t.hpp>
 #include <planemap/trajectory_t.hpp>
 
+#include "messages/decode.hpp"
+
 namespace planemap {
 
 namespace {
 
+using Names = std::map<std::uint64_t, std::string>;
+
 template <typename... Types>
-std::map<std::uint64_t, std::string> names_of(const char* package) {
-    return {
-        {static_cast<std::uint64_t>(Types::getHash()), std::string(package) + "." + Types::getTypeName()}...};
+void add_names(const std::string& package, Names& names) {
+    ((names[static_cast<std::uint64_t>(Types::getHash())] = package + "." + Types::getTypeName()), ...);
+}
+
+/// A type of ours, also as earlier planemaps wrote it.
+template <typename Type>
+void add_all_names(Names& names) {
+    for (const std::uint64_t known : messages::fingerprints<Type>())
+        names[known] = std::string("planemap.") + Type::getTypeName();
+}
+
+template <typename... Types>
+void add_our_names(Names& names) {
+    (add_all_names<Types>(names), ...);
 }
 
 std::string type_name(std::uint64_t fingerprint) {
-    static const std::map<std::uint64_t, std::string> names = [] {
-        auto all =
-            names_of<bot_core::image_t, bot_core::images_t, bot_core::pointcloud_t, bot_core::pose_t,
-                     bot_core::raw_t, bot_core::rigid_transform_t, bot_core::sensor_status_t>("bot_core");
-        all.merge(names_of<camera_info_t, keyframe_t, map_size_t, module_status_t, odometry_t,
-                           planar_regions_t, plane_map_t, trajectory_t>("planemap"));
-        all.merge(names_of<kinect::frame_msg_t>("kinect"));
+    static const Names names = [] {
+        Names all;
+        add_names<bot_core::image_t, bot_core::images_t, bot_core::pointcloud_t, bot_core::pose_t,
+                  bot_core::raw_t, bot_core::rigid_transform_t, bot_core::sensor_status_t>("bot_core", all);
+        add_names<kinect::frame_msg_t>("kinect", all);
+        add_our_names<camera_info_t, keyframe_t, map_size_t, module_status_t, odometry_t, planar_regions_t,
+                      plane_map_t, trajectory_t>(all);
         return all;
     }();
     const auto known = names.find(fingerprint);
@@ -55,15 +70,9 @@ std::string printable(std::string name) {
 
 }  // namespace
 
-std::uint64_t fingerprint(const messages::LogEvent& event) {
-    std::uint64_t value = 0;
-    for (std::size_t i = 0; i < 8 && event.bytes.size() >= 8; ++i) value = value << 8 | event.bytes[i];
-    return value;
-}
-
 void LogContents::add(const messages::LogEvent& event) {
     ++count_;
-    const std::pair key(event.channel, fingerprint(event));
+    const std::pair key(event.channel, messages::fingerprint_of(event.bytes));
     if (messages_.size() < kMaxRows || messages_.count(key) > 0) {
         ++messages_[key];
     } else {

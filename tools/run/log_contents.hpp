@@ -10,9 +10,6 @@
 
 namespace planemap {
 
-/// The fingerprint that a message begins with; 0 for one that is too short to have one.
-std::uint64_t fingerprint(const messages::LogEvent& event);
-
 /// Which channels a log has, and what is on them: for the error that nothing of it can be used.
 class LogContents {
   public:
