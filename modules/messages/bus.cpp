@@ -19,6 +19,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "messages/channels.hpp"
 #include "messages/interrupt.hpp"
 
 namespace planemap::messages {
@@ -148,9 +149,21 @@ std::int64_t random_session() {
     return static_cast<std::int64_t>(bits >> 1 | 1);
 }
 
+/// Subscriptions are regular expressions: no character of a prefix may mean anything in one.
+const std::string& checked_prefix(const std::string& prefix) {
+    constexpr const char* kAllowed = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-/";
+    if (prefix.size() <= channels::kMaxChannelPrefix &&
+        prefix.find_first_not_of(kAllowed) == std::string::npos)
+        return prefix;
+    throw std::invalid_argument("the channel prefix '" + prefix + "' must be at most " +
+                                std::to_string(channels::kMaxChannelPrefix) +
+                                " letters, digits and characters of _-/");
+}
+
 }  // namespace
 
-Bus::Bus(const std::string& url) : endpoint_(completed(url)) {
+Bus::Bus(const std::string& url, const std::string& channel_prefix)
+    : endpoint_(completed(url)), prefix_(checked_prefix(channel_prefix)) {
     if (!in_process()) session_ = random_session();
     if (!connect() && !endpoint_.is_network())
         throw std::runtime_error("LCM URL '" + this->url() + "': " + lost_reason_);
@@ -160,6 +173,14 @@ Bus::Bus(const std::string& url) : endpoint_(completed(url)) {
 
 Bus::~Bus() {
     discard();
+}
+
+/// The channel as the bus knows it. liblcm would print a line, on some transports, and send nothing.
+std::string Bus::full_name(const std::string& channel) const {
+    std::string name = prefix_ + channel;
+    if (name.size() <= channels::kMaxChannel) return name;
+    throw std::invalid_argument("the channel " + name + " has " + std::to_string(name.size()) +
+                                " characters; LCM allows " + std::to_string(channels::kMaxChannel));
 }
 
 /// Ends the connection. Of one to a server that is gone, liblcm tries to make it again for each subscription
@@ -230,6 +251,7 @@ std::string Bus::trouble() const {
 }
 
 void Bus::publish_bytes(const std::string& channel, std::span<const std::uint8_t> bytes) {
+    const std::string name = full_name(channel);
     if (!connected()) {
         ++unsent_;
         return;
@@ -239,7 +261,7 @@ void Bus::publish_bytes(const std::string& channel, std::span<const std::uint8_t
     const Waiting waiting(server ? lcm_->getFileno() : -1);
     const std::int64_t began_us = now_us();
     errno = 0;
-    const int result = lcm_->publish(channel, bytes.data(), static_cast<unsigned>(bytes.size()));
+    const int result = lcm_->publish(name, bytes.data(), static_cast<unsigned>(bytes.size()));
     const int error = errno;
     const bool network = !server && endpoint_.is_network() && is_network_error(error);
     const bool server_gone = server && result != 0;
@@ -249,7 +271,7 @@ void Bus::publish_bytes(const std::string& channel, std::span<const std::uint8_t
         lose(network ? std::string("cannot send: ") + std::strerror(error) : server_loss(began_us, error));
         return;
     }
-    complaints_.add("LCM URL '" + url() + "': " + channel + " (" + std::to_string(bytes.size()) +
+    complaints_.add("LCM URL '" + url() + "': " + name + " (" + std::to_string(bytes.size()) +
                     " bytes) cannot be sent");
 }
 
@@ -263,8 +285,9 @@ void Bus::subscribe(const std::string& channel, Handler handler, int capacity) {
 }
 
 bool Bus::attach(Subscriber& subscriber) {
-    lcm::Subscription* subscription =
-        lcm_->subscribeFunction(subscriber.channel, &Bus::dispatch, &subscriber);
+    const bool alternatives = subscriber.channel.find('|') != std::string::npos;
+    const std::string pattern = alternatives ? "(" + subscriber.channel + ")" : subscriber.channel;
+    lcm::Subscription* subscription = lcm_->subscribeFunction(prefix_ + pattern, &Bus::dispatch, &subscriber);
     if (subscription == nullptr || lcm_->getFileno() < 0) return false;
     subscription->setQueueCapacity(in_process() ? 0 : subscriber.capacity);
     return true;
@@ -274,7 +297,8 @@ void Bus::dispatch(const lcm::ReceiveBuffer* buffer, const std::string& channel,
     const Waiting working(-1);
     try {
         const auto* bytes = static_cast<const std::uint8_t*>(buffer->data);
-        subscriber->handler({channel, {bytes, buffer->data_size}, buffer->recv_utime});
+        const std::string_view name = std::string_view(channel).substr(subscriber->bus->prefix_.size());
+        subscriber->handler({name, {bytes, buffer->data_size}, buffer->recv_utime});
     } catch (const std::exception& error) {
         subscriber->bus->report(channel, error.what());
     } catch (...) {

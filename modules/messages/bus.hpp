@@ -36,13 +36,19 @@ class Bus {
     /// Opens an LCM URL; empty means LCM_DEFAULT_URL, or LCM's default. A udpm URL without recv_buf_size gets
     /// 4 MiB, since without it no camera frame arrives. Throws std::runtime_error that names the URL and the
     /// reason if it is malformed, or a log that cannot be read.
-    explicit Bus(const std::string& url = "");
+    ///
+    /// Each channel's name on the bus begins with `channel_prefix`, so that two cameras or robots can share a
+    /// bus; whoever publishes, subscribes or handles a message here writes it without. Throws
+    /// std::invalid_argument that names the prefix and what is allowed: at most channels::kMaxChannelPrefix
+    /// letters, digits and characters of _-/.
+    explicit Bus(const std::string& url = "", const std::string& channel_prefix = "");
     ~Bus();
     Bus(const Bus&) = delete;
     Bus& operator=(const Bus&) = delete;
 
     /// The URL after completion.
     const std::string& url() const { return endpoint_.url(); }
+    const std::string& channel_prefix() const { return prefix_; }
     /// True for memq://, where nothing may be dropped.
     bool in_process() const { return endpoint_.in_process(); }
 
@@ -50,7 +56,8 @@ class Bus {
     /// at random, not 0. In one process 0, so that the same input gives the same bytes.
     std::int64_t session() const { return session_; }
 
-    /// Sends a message. One that cannot be sent (no connection, too large) is counted in unsent().
+    /// Sends a message. Throws std::invalid_argument for a channel that is too long for LCM. One that cannot
+    /// be sent (no connection, too large) is counted in unsent().
     template <typename T>
     void publish(const std::string& channel, const T& message) {
         const int size = message.getEncodedSize();
@@ -94,6 +101,7 @@ class Bus {
     struct Subscriber;
     static void dispatch(const lcm::ReceiveBuffer* buffer, const std::string& channel,
                          Subscriber* subscriber);
+    std::string full_name(const std::string& channel) const;
     bool connect();
     void discard();
     bool attach(Subscriber& subscriber);
@@ -101,6 +109,7 @@ class Bus {
     void lose(const std::string& reason);
 
     Endpoint endpoint_;
+    std::string prefix_;
     std::unique_ptr<lcm::LCM> lcm_;
     std::vector<std::unique_ptr<Subscriber>> subscribers_;
     std::vector<std::uint8_t> buffer_;

@@ -2,6 +2,8 @@
 // The channels of the bus, upper case as the LCM world writes them.
 #pragma once
 
+#include <cstddef>
+
 namespace planemap::messages::channels {
 
 inline constexpr const char* kFrame = "OPENNI_FRAME";                 ///< bot_core.images_t
@@ -15,5 +17,9 @@ inline constexpr const char* kMap = "PLANEMAP_MAP";                   ///< plane
 inline constexpr const char* kOctomapSize = "PLANEMAP_OCTOMAP_SIZE";  ///< planemap.map_size_t
 inline constexpr const char* kStatusPrefix =
     "PLANEMAP_STATUS_";  ///< planemap.module_status_t, module in upper case
+
+inline constexpr std::size_t kMaxChannel = 63;  ///< characters, LCM's bound
+/// Of a session's prefix, which leaves 32 characters for the names above.
+inline constexpr std::size_t kMaxChannelPrefix = 31;
 
 }  // namespace planemap::messages::channels

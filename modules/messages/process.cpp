@@ -133,6 +133,9 @@ Process::Process(std::string module, const std::string& description)
     : module_(std::move(module)), program_("planemap-" + module_), flags_(program_, description) {
     flags_.add("l,lcm-url", lcm_url_,
                "LCM URL; default: LCM_DEFAULT_URL, else udpm on this machine only (ttl=0)");
+    flags_.add("channel-prefix", channel_prefix_,
+               "Begins the name of every channel, for two cameras or robots on one bus; all modules of a "
+               "session are given the same");
     flags_.add("v,verbose", verbose_, "Log more");
 }
 
@@ -142,10 +145,12 @@ int Process::run(int argc, char** argv, const std::function<std::unique_ptr<Shel
     return run_main(program_, [&] {
         start_logging(program_, verbose_);
         catch_stop_signals();
-        Bus bus(lcm_url_);
+        Bus bus(lcm_url_, channel_prefix_);
         const std::unique_ptr<Shell> shell = make_shell(bus);
         require_shared(bus);
-        if (bus.connected()) spdlog::info("on {}", bus.url());
+        if (bus.connected())
+            spdlog::info("on {}{}", bus.url(),
+                         channel_prefix_.empty() ? "" : ", channels " + channel_prefix_ + "*");
         serve(*shell, bus);
         return 0;
     });

@@ -60,7 +60,7 @@ class Process {
   private:
     std::string module_, program_;
     Flags flags_;
-    std::string lcm_url_;
+    std::string lcm_url_, channel_prefix_;
     bool verbose_ = false;
 };
 

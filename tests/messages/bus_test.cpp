@@ -192,6 +192,56 @@ TEST(Bus, AServerThatComesLateIsFoundAndOneThatGoesAndComesAgainToo) {
     EXPECT_NE(from.trouble().find("4 messages could not be sent"), std::string::npos) << from.trouble();
 }
 
+TEST(Bus, TwoPrefixesOnOneBusDoNotMix) {
+    const test::TcpqServer server;
+    Bus left(server.url(), "left/"), right(server.url(), "R_"), plain(server.url()), all(server.url());
+    std::vector<std::string> at_left, at_right, at_plain, at_all;
+    const auto hear = [](Bus& bus, const std::string& channels, std::vector<std::string>& heard) {
+        bus.subscribe(channels, [&heard](const RawMessage& m) { heard.emplace_back(m.channel); });
+    };
+    hear(left, channels::kFrame, at_left);
+    hear(right, "OPENNI_FRAME|POSE_BODY", at_right);
+    hear(plain, "OPENNI_FRAME|POSE_BODY", at_plain);
+    hear(all, ".*", at_all);
+    ASSERT_TRUE(handle_until({&left, &right, &plain, &all}, [&] { return server.subscriptions() == 4; }));
+    const std::vector<std::uint8_t> bytes(4);
+    left.publish_bytes(channels::kFrame, bytes);
+    right.publish_bytes(channels::kPose, bytes);
+    right.publish_bytes(channels::kFrame, bytes);
+    plain.publish_bytes(channels::kPose, bytes);
+    ASSERT_TRUE(handle_until({&left, &right, &plain, &all}, [&] { return at_all.size() == 4; }));
+    while (left.handle(20) || right.handle(20) || plain.handle(20)) {
+    }
+    using testing::ElementsAre;
+    using testing::UnorderedElementsAre;
+    EXPECT_THAT(at_left, ElementsAre(channels::kFrame)) << "handlers see names without the prefix";
+    EXPECT_THAT(at_right, ElementsAre(channels::kPose, channels::kFrame));
+    EXPECT_THAT(at_plain, ElementsAre(channels::kPose));
+    EXPECT_THAT(at_all,
+                UnorderedElementsAre("left/OPENNI_FRAME", "R_POSE_BODY", "R_OPENNI_FRAME", "POSE_BODY"));
+}
+
+TEST(Bus, APrefixLeavesRoomForEveryChannel) {
+    const std::string longest(channels::kMaxChannelPrefix, 'P');
+    Bus bus("memq://", longest);
+    for (const char* channel :
+         {channels::kFrame, channels::kCameraInfo, channels::kRegions, channels::kOdometry, channels::kPose,
+          channels::kKeyframe, channels::kTrajectory, channels::kMap, channels::kOctomapSize,
+          "PLANEMAP_STATUS_SEGMENTATION"})
+        bus.publish_bytes(channel, std::vector<std::uint8_t>(4));
+    EXPECT_EQ(bus.unsent(), 0);
+    EXPECT_THROW(bus.publish_bytes(std::string(33, 'C'), std::vector<std::uint8_t>(4)),
+                 std::invalid_argument);
+    for (const std::string& bad : {longest + "P", std::string("robot.*"), std::string("two words")}) {
+        try {
+            Bus refused("memq://", bad);
+            FAIL() << bad;
+        } catch (const std::invalid_argument& error) {
+            EXPECT_NE(std::string(error.what()).find("channel prefix '" + bad + "'"), std::string::npos);
+        }
+    }
+}
+
 TEST(Bus, AServerThatVanishesWhileASenderDoesNotListenIsNoticed) {
     auto server = std::make_unique<test::TcpqServer>();
     Bus bus(server->url());
