@@ -11,13 +11,14 @@ find_package(nlohmann_json REQUIRED)
 find_package(Threads REQUIRED)
 find_package(OpenCV REQUIRED COMPONENTS core imgproc features2d video)
 
-# find_library_target(TARGET HEADER LIBRARY): an imported target for a library without a CMake config.
+# find_library_target(TARGET HEADER LIBRARY [FOLDER of the header]): an imported target for a library without a CMake
+# config.
 function(find_library_target target header library)
     if(TARGET ${target})
         return()
     endif()
     string(MAKE_C_IDENTIFIER ${target} id)
-    find_path(${id}_INCLUDE ${header} REQUIRED)
+    find_path(${id}_INCLUDE ${header} PATH_SUFFIXES ${ARGN} REQUIRED)
     find_library(${id}_LIBRARY ${library} REQUIRED)
     add_library(${target} INTERFACE IMPORTED GLOBAL)
     target_include_directories(${target} SYSTEM INTERFACE ${${id}_INCLUDE})
@@ -27,6 +28,8 @@ find_library_target(lcm::lcm lcm/lcm-cpp.hpp lcm)
 find_library_target(turbojpeg::turbojpeg turbojpeg.h turbojpeg)
 find_library_target(libdeflate::libdeflate libdeflate.h deflate)
 find_library_target(spng::spng spng.h spng)
+find_library_target(OpenNI2::OpenNI2 OpenNI.h OpenNI2 openni2)
+find_library_target(freenect::freenect libfreenect.h freenect)
 
 # PCL's own config drags in VTK, Qt and MPI; the paper's RANSAC needs four of its libraries.
 if(TARGET planemap_pcl)

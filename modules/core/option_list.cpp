@@ -5,6 +5,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <stdexcept>
 #include <type_traits>
 #include <utility>
 
@@ -79,6 +80,30 @@ std::string Option::allowed() const {
 std::string Option::range_and_unit() const {
     const std::string text = range.text(), of = unit();
     return text.empty() || of.empty() ? text + of : text + " " + of;
+}
+
+void Option::set(const std::string& text) const {
+    const auto require = [&](bool is_right, const char* what) {
+        if (!is_right) throw std::invalid_argument(name + " is \"" + text + "\", must be " + what);
+    };
+    std::visit(
+        [&](auto* field) {
+            using T = std::decay_t<decltype(*field)>;
+            if constexpr (std::is_same_v<T, std::string>) {
+                *field = text;
+            } else if constexpr (std::is_same_v<T, bool>) {
+                require(text == "0" || text == "1", "0 or 1");
+                *field = text == "1";
+            } else {
+                T value{};
+                const char* end = text.data() + text.size();
+                const auto [stop, error] = std::from_chars(text.data(), end, value);
+                require(error == std::errc() && stop == end,
+                        std::is_floating_point_v<T> ? "a number" : "a whole number");
+                *field = value;
+            }
+        },
+        field);
 }
 
 std::string Option::value() const {

@@ -59,6 +59,9 @@ struct Option {
     std::string allowed() const;
     /// "0 to 100 m"; empty where all is allowed and there is no unit.
     std::string range_and_unit() const;
+    /// Sets the field. Throws std::invalid_argument, "NAME is "x", must be a number", for a text that is no
+    /// value of its type (a flag's are 0 and 1); the range is not checked.
+    void set(const std::string& text) const;
     /// The field's value now, numbers with the fewest digits that give the same number again.
     std::string value() const;
     bool is_allowed() const;

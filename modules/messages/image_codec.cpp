@@ -39,9 +39,8 @@ Turbo& decompressor() {
     throw MessageError("JPEG: " + reason);
 }
 
-}  // namespace
-
-GrayImage decode_jpeg_luma(std::span<const std::uint8_t> jpeg, int width, int height) {
+template <typename Pixel>
+Image<Pixel> decode_jpeg(std::span<const std::uint8_t> jpeg, int width, int height, int format) {
     Turbo& handle = decompressor();
     int w = 0, h = 0, subsampling = 0, colorspace = 0;
     if (tjDecompressHeader3(handle.get(), jpeg.data(), jpeg.size(), &w, &h, &subsampling, &colorspace) != 0) {
@@ -54,12 +53,24 @@ GrayImage decode_jpeg_luma(std::span<const std::uint8_t> jpeg, int width, int he
     // Accurate transforms, so that luma is the same whatever decodes it; a warning (cut short, corrupt) is an
     // error.
     const int flags = TJFLAG_ACCURATEDCT | TJFLAG_STOPONWARNING;
-    GrayImage image(width, height);
-    if (tjDecompress2(handle.get(), jpeg.data(), jpeg.size(), image.pixels.data(), width, 0, height,
-                      TJPF_GRAY, flags) != 0) {
+    Image<Pixel> image(width, height);
+    if (tjDecompress2(handle.get(), jpeg.data(), jpeg.size(),
+                      reinterpret_cast<unsigned char*>(image.pixels.data()), 0, 0, height, format,
+                      flags) != 0) {
         fail(handle);
     }
     return image;
+}
+
+}  // namespace
+
+GrayImage decode_jpeg_luma(std::span<const std::uint8_t> jpeg, int width, int height) {
+    return decode_jpeg<std::uint8_t>(jpeg, width, height, TJPF_GRAY);
+}
+
+RgbImage decode_jpeg_colors(std::span<const std::uint8_t> jpeg, int width, int height) {
+    static_assert(sizeof(Rgb) == 3);
+    return decode_jpeg<Rgb>(jpeg, width, height, TJPF_RGB);
 }
 
 std::vector<std::uint8_t> encode_jpeg(const RgbImage& image, int quality) {

@@ -15,6 +15,8 @@ namespace planemap::messages {
 
 /// Luma of a JPEG, which costs a fraction of its colours.
 GrayImage decode_jpeg_luma(std::span<const std::uint8_t> jpeg, int width, int height);
+/// All of its colours.
+RgbImage decode_jpeg_colors(std::span<const std::uint8_t> jpeg, int width, int height);
 /// quality: 1 to 100.
 std::vector<std::uint8_t> encode_jpeg(const RgbImage& image, int quality);
 

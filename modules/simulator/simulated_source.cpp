@@ -2,7 +2,6 @@
 #include "simulator/simulated_source.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -43,32 +42,6 @@ std::string joined(const std::vector<std::string>& names) {
     return text;
 }
 
-template <typename T>
-T parse_number(const std::string& key, const std::string& text) {
-    T value{};
-    const char* end = text.data() + text.size();
-    const auto [stop, error] = std::from_chars(text.data(), end, value);
-    if (error != std::errc() || stop != end) {
-        throw std::invalid_argument("simulator parameter " + key + " is \"" + text + "\", must be a" +
-                                    (std::is_floating_point_v<T> ? " number" : " whole number"));
-    }
-    return value;
-}
-
-void parse(const std::string& key, const std::string& text, bool& field) {
-    if (text != "0" && text != "1")
-        throw std::invalid_argument("simulator parameter " + key + " is \"" + text + "\", must be 0 or 1");
-    field = text == "1";
-}
-void parse(const std::string& key, const std::string& text, std::string& field) {
-    if (text.empty()) throw std::invalid_argument("simulator parameter " + key + " is empty, must be a file");
-    field = text;
-}
-template <typename T>
-void parse(const std::string& key, const std::string& text, T& field) {
-    field = parse_number<T>(key, text);
-}
-
 void set_parameter(SimulatorOptions& options, const std::string& parameter, std::vector<std::string>& seen) {
     const auto equals = parameter.find('=');
     const std::string key = parameter.substr(0, equals);
@@ -80,7 +53,15 @@ void set_parameter(SimulatorOptions& options, const std::string& parameter, std:
         if (std::find(seen.begin(), seen.end(), key) != seen.end())
             throw std::invalid_argument("simulator parameter " + key + " is given twice");
         seen.push_back(key);
-        std::visit([&](auto* field) { parse(key, parameter.substr(equals + 1), *field); }, option.field);
+        const std::string value = parameter.substr(equals + 1);
+        const bool is_text = std::holds_alternative<std::string*>(option.field);
+        if (is_text && value.empty())
+            throw std::invalid_argument("simulator parameter " + key + " is empty, must be a file");
+        try {
+            option.set(value);
+        } catch (const std::invalid_argument& error) {
+            throw std::invalid_argument(std::string("simulator parameter ") + error.what());
+        }
         return;
     }
     throw std::invalid_argument("\"" + parameter +
