@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,8 +17,9 @@ using Sightings = std::map<int, std::vector<int>>;
 
 /// JSON: up, planes (id, label, normal, d, inliers, rms, box corners, area, outline rings, keyframes),
 /// intersection lines and points. World frame, metres; values are rounded to a micrometre (normals to 1e-9).
-/// Values that are not finite become null, and so does up when it is not known.
-std::string planes_json(const PlaneMap& map, const Sightings& sightings = {});
+/// Values that are not finite become null, and so do up and the keyframes that saw a plane when they are not
+/// known.
+std::string planes_json(const PlaneMap& map, const std::optional<Sightings>& sightings = std::nullopt);
 
 // All others leave out planes that are not finite or have no outline.
 

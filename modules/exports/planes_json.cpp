@@ -20,7 +20,13 @@ Json vector(const Eigen::Vector3d& v, double per_unit = 1e6) {
     return {number(v.x(), per_unit), number(v.y(), per_unit), number(v.z(), per_unit)};
 }
 
-Json plane_json(const MapPlane& plane, const Sightings& sightings) {
+Json keyframes_json(int id, const std::optional<Sightings>& sightings) {
+    if (!sightings) return nullptr;
+    const auto seen = sightings->find(id);
+    return seen == sightings->end() ? std::vector<int>{} : seen->second;
+}
+
+Json plane_json(const MapPlane& plane, const std::optional<Sightings>& sightings) {
     const PlanarRegion region = plane.region();
     Json corners = Json::array(), outline = Json::array();
     for (const Eigen::Vector3d& corner : region.box.corners()) corners.push_back(vector(corner));
@@ -41,9 +47,8 @@ Json plane_json(const MapPlane& plane, const Sightings& sightings) {
     json["center"] = vector(region.box.frame_from_box.translation());
     json["box_corners"] = std::move(corners);
     json["outline"] = std::move(outline);
-    const auto seen = sightings.find(plane.id);
     json["keyframe_count"] = plane.keyframes;
-    json["keyframes"] = seen == sightings.end() ? std::vector<int>{} : seen->second;
+    json["keyframes"] = keyframes_json(plane.id, sightings);
     return json;
 }
 
@@ -60,7 +65,7 @@ std::string lines_of(const Items& items, ToJson to_json) {
 
 }  // namespace
 
-std::string planes_json(const PlaneMap& map, const Sightings& sightings) {
+std::string planes_json(const PlaneMap& map, const std::optional<Sightings>& sightings) {
     std::string text = "{\n \"format\": \"planemap planes 1\",\n";
     text +=
         " \"units\": \"metres; world frame; n.p + d = 0 with the normal towards where the plane was seen "

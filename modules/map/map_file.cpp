@@ -43,6 +43,10 @@ PlaneMap read_plane_map(const std::filesystem::path& file) {
                                  ")");
     try {
         return messages::from_message(messages::decode<plane_map_t>(newest));
+    } catch (const messages::OtherTypeError& error) {
+        throw std::runtime_error(
+            file.string() +
+            ": its map is in the format of another planemap, which this one does not read: " + error.what());
     } catch (const messages::MessageError& error) {
         throw std::runtime_error(file.string() + ": its map is corrupt: " + error.what());
     }

@@ -520,6 +520,7 @@ PlaneMap from_message(const plane_map_t& message) {
         require(index >= 0 && index < message.n_planes, field, "is not a plane of the map");
         return map.planes[static_cast<std::size_t>(index)];
     };
+    map.lines.reserve(message.lines.size());
     for (const map_line_t& line : message.lines) {
         const MapPlane &a = plane_at(line.plane_a, "line.plane_a"),
                        &b = plane_at(line.plane_b, "line.plane_b");
@@ -532,6 +533,7 @@ PlaneMap from_message(const plane_map_t& message) {
         };
         map.lines.push_back({a.id, b.id, at(line.start), at(line.stop)});
     }
+    map.points.reserve(message.points.size());
     for (const map_point_t& point : message.points) {
         const MapPlane &a = plane_at(point.planes[0], "point.planes"),
                        &b = plane_at(point.planes[1], "point.planes"),

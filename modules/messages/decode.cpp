@@ -251,7 +251,7 @@ T decode(std::span<const std::uint8_t> bytes) {
     if (fingerprint != today) {
         for (const Earlier& then : earlier(static_cast<const T*>(nullptr)))
             if (fingerprint == then.fingerprint) return decode<T>(completed(bytes, today, then.missing));
-        throw MessageError(type + ": the fingerprint is another type's");
+        throw OtherTypeError(type + ": the fingerprint is another type's");
     }
     try {
         Walker walker(bytes.subspan(8));

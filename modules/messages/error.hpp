@@ -12,4 +12,10 @@ class MessageError : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+/// The message is of another type, or of another version of it: nothing is wrong with its bytes.
+class OtherTypeError : public MessageError {
+  public:
+    using MessageError::MessageError;
+};
+
 }  // namespace planemap::messages

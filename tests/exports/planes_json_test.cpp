@@ -14,7 +14,7 @@ using scene::corner;
 
 TEST(PlanesJson, SaysWhatTheMapSays) {
     const PlaneMap map = corner();
-    const auto json = nlohmann::json::parse(planes_json(map, {{3, {0, 3}}}));
+    const auto json = nlohmann::json::parse(planes_json(map, Sightings{{3, {0, 3}}}));
     EXPECT_EQ(json["utime"], 42);
     EXPECT_EQ(json["up"], nlohmann::json::parse("[0.0, 0.0, 1.0]"));
     ASSERT_EQ(json["planes"].size(), 3u);
@@ -35,6 +35,8 @@ TEST(PlanesJson, SaysWhatTheMapSays) {
     EXPECT_EQ(json["lines"][0]["planes"], nlohmann::json::parse("[1, 3]"));
     EXPECT_EQ(json["points"][0]["position"], nlohmann::json::parse("[1.0, 1.0, 0.0]"));
     EXPECT_EQ(planes_json(map), planes_json(corner()));
+    EXPECT_TRUE(json["planes"][0]["keyframes"].is_array()) << "seen by none";
+    EXPECT_TRUE(nlohmann::json::parse(planes_json(map))["planes"][0]["keyframes"].is_null()) << "not known";
 }
 
 TEST(PlanesJson, OfAnEmptyMapAndOfNan) {
@@ -44,7 +46,7 @@ TEST(PlanesJson, OfAnEmptyMapAndOfNan) {
     PlaneMap map = corner();
     map.planes[0].rms = std::numeric_limits<float>::quiet_NaN();
     map.planes[0].area = std::numeric_limits<float>::infinity();
-    const auto json = nlohmann::json::parse(planes_json(map, {{3, {0, 3}}}));
+    const auto json = nlohmann::json::parse(planes_json(map, Sightings{{3, {0, 3}}}));
     EXPECT_TRUE(json["planes"][0]["rms"].is_null());
     EXPECT_TRUE(json["planes"][0]["area"].is_null());
 }

@@ -8,13 +8,13 @@
 
 #include "core/files.hpp"
 #include "evaluate/soundness_report.hpp"
-#include "exports/exports.hpp"
 #include "map/map_file.hpp"
 #include "pipeline/pipeline.hpp"
 #include "run/accuracy.hpp"
 #include "run/depth_watch.hpp"
 #include "run/input.hpp"
 #include "run/losses.hpp"
+#include "run/map_results.hpp"
 #include "run/report.hpp"
 #include "run/size_report.hpp"
 #include "run/warnings.hpp"
@@ -72,14 +72,18 @@ std::int64_t tracked_frames(const pipeline::Pipeline& pipeline) {
                          [](const auto& e) { return e.status != TrackingStatus::kLost; });
 }
 
-std::vector<Result> essential_results(pipeline::Pipeline& pipeline) {
+namespace {
+
+MapSource map_source(pipeline::Pipeline& pipeline) {
     const map::PlaneMapper& mapper = pipeline.map().mapper();
-    return {
-        {"plane_map.lcmlog", [&mapper](const auto& file) { map::write_plane_map(file, mapper.map()); }},
-        {"trajectory.txt", [&pipeline](const auto& file) { write_trajectory(file, pipeline.trajectory()); }},
-        {"planes.json", [&mapper](const auto& file) {
-             write_file(file, exports::planes_json(mapper.map(), mapper.sightings()));
-         }}};
+    return {mapper.map(), [&pipeline] { return pipeline.trajectory(); },
+            [&mapper] { return mapper.sightings(); }};
+}
+
+}  // namespace
+
+std::vector<Result> essential_results(pipeline::Pipeline& pipeline) {
+    return essential_results(map_source(pipeline));
 }
 
 namespace {
@@ -126,27 +130,13 @@ Json report_of(const std::string& input_name, const Input& input, pipeline::Pipe
 
 /// What can be had from the essential results, or is less than them: the small first, the largest last.
 std::vector<Result> further_results(const Input& input, pipeline::Pipeline& pipeline, const Json& report) {
-    const PlaneMap& map = pipeline.map().mapper().map();
-    std::vector<Result> results;
-    const auto add = [&](const char* name, std::function<std::string()> bytes) {
-        results.push_back({name, [=](const auto& file) { write_file(file, bytes()); }});
-    };
-    if (!report.is_null()) {
-        add("report.json",
-            [&report] { return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; });
-        add("report.md", [&report] { return report_markdown(report); });
-    }
+    std::vector<Result> results = report_results(report);
     for (Result& truth : input.truth_results()) results.push_back(std::move(truth));
-    add("planes.ply", [&map, &pipeline] { return exports::planes_ply(map, pipeline.trajectory()); });
-    add("planes.obj", [&map, &pipeline] { return exports::planes_obj(map, pipeline.trajectory()); });
-    add("planes.mtl", [&map] { return exports::planes_mtl(map); });
-    add("planes.glb", [&map, &pipeline] { return exports::planes_glb(map, pipeline.trajectory()); });
-    add("floor_plan.geojson",
-        [&map, &pipeline] { return exports::floor_plan_geojson(map, pipeline.trajectory()); });
-    add("overhead.svg", [&map, &pipeline] { return exports::overhead_svg(map, pipeline.trajectory()); });
-    add("map.svg", [&map, &pipeline] { return exports::perspective_svg(map, pipeline.trajectory()); });
+    for (Result& drawn : drawn_results(map_source(pipeline))) results.push_back(std::move(drawn));
     if (pipeline.octomap() != nullptr)
-        add("octomap.bt", [&pipeline] { return pipeline.octomap()->builder().bt(); });
+        results.push_back({"octomap.bt", [&pipeline](const auto& file) {
+                               write_file(file, pipeline.octomap()->builder().bt());
+                           }});
     return results;
 }
 
@@ -162,10 +152,8 @@ std::string why_poorer(const std::filesystem::path& folder, const Input& input,
 }  // namespace
 
 std::vector<std::string> result_names(const std::filesystem::path& folder, const Input& input) {
-    std::vector<std::string> names{"plane_map.lcmlog", "trajectory.txt",     "planes.json",  "report.json",
-                                   "report.md",        "planes.ply",         "planes.obj",   "planes.mtl",
-                                   "planes.glb",       "floor_plan.geojson", "overhead.svg", "map.svg",
-                                   "octomap.bt"};
+    std::vector<std::string> names = map_result_names();
+    names.emplace_back("octomap.bt");
     const std::vector<std::string> truth{"groundtruth.txt", "planes_truth.json"};
     std::error_code ignored;
     bool simulated_before = false;

@@ -33,18 +33,39 @@ void add_times(const Json& report, std::string& out) {
            format("%.0f MB", report.at("peak_rss_mb").get<double>()) + ".\n";
 }
 
+/// Of a map that planemap-export found in a file: nothing is known of the run that made it.
+bool is_exported(const Json& report) {
+    return report.value("exported", false);
+}
+
+std::string number(const Json& report, const char* key) {
+    return format("%.0f", report.at(key).get<double>());
+}
+
+void add_origin(const Json& report, std::string& out) {
+    if (!report.contains("version")) return;
+    const Json seed = report.value("seed", Json());
+    out += "planemap " + report.at("version").get<std::string>() + ", " +
+           report.at("date").get<std::string>() + (seed.is_number() ? ", seed " + seed.dump() : "") +
+           "; all options are in report.json.\n\n";
+}
+
 void add_tracking(const Json& report, std::string& out) {
-    if (report.contains("version")) {
-        const Json seed = report.value("seed", Json());
-        out += "planemap " + report.at("version").get<std::string>() + ", " +
-               report.at("date").get<std::string>() + (seed.is_number() ? ", seed " + seed.dump() : "") +
-               "; all options are in report.json.\n\n";
-    }
-    const auto number = [&](const char* key) { return format("%.0f", report.at(key).get<double>()); };
-    out += number("frames") + " frames: " + number("tracked") + " tracked, " + number("lost") + " lost, " +
-           number("broken") + " broken. " + number("keyframes") + " keyframes, " + number("loop_closures") +
-           " loop closures, " + number("planes") + " planes.\n\n";
+    const auto count = [&](const char* key) { return number(report, key); };
+    out += count("frames") + " frames: " + count("tracked") + " tracked, " + count("lost") + " lost, " +
+           count("broken") + " broken. " + count("keyframes") + " keyframes, " + count("loop_closures") +
+           " loop closures, " + count("planes") + " planes.\n\n";
     if (report.value("interrupted", false)) out += "The run ended before the end of its input.\n\n";
+}
+
+void add_what_is_known(const Json& report, std::string& out) {
+    out += number(report, "planes") + " planes, " +
+           (report.at("tracked").is_number() ? number(report, "tracked") + " poses" : "no trajectory") +
+           ". Made of a stored map: its input, frames, keyframes, loop closures, losses and times are not "
+           "known.\n\n";
+}
+
+void add_accuracy(const Json& report, std::string& out) {
     if (report.contains("accuracy")) {
         const Json& accuracy = report.at("accuracy");
         out += "Against the truth beside the input: ATE " +
@@ -60,6 +81,9 @@ void add_tracking(const Json& report, std::string& out) {
     if (report.contains("accuracy_note"))
         out += "Accuracy: " + report.at("accuracy_note").get<std::string>() + ".\n";
     if (report.contains("accuracy") || report.contains("accuracy_note")) out += "\n";
+}
+
+void add_remarks(const Json& report, std::string& out) {
     for (const Json& warning : report.value("warnings", Json::array()))
         out += "**Warning:** " + warning.get<std::string>() + ".\n\n";
     if (report.contains("complaints") && !report.at("complaints").empty()) {
@@ -74,14 +98,13 @@ struct Field {
     const char *pointer, *type;
 };
 
-constexpr Field kFields[] = {{"/input", "string"},         {"/frames", "number"},
-                             {"/tracked", "number"},       {"/lost", "number"},
-                             {"/broken", "number"},        {"/keyframes", "number"},
-                             {"/loop_closures", "number"}, {"/planes", "number"},
-                             {"/wall_s", "number"},        {"/cpu_s", "number"},
-                             {"/peak_rss_mb", "number"},   {"/stages_ms", "object"},
-                             {"/sizes_bytes", "object"},   {"/sizes_bytes/plane_map_message", "number"},
-                             {"/octomap", "object"},       {"/coverage", "object"}};
+constexpr Field kFields[] = {{"/input", "string"},       {"/planes", "number"},
+                             {"/sizes_bytes", "object"}, {"/sizes_bytes/plane_map_message", "number"},
+                             {"/octomap", "object"},     {"/coverage", "object"}};
+constexpr Field kFieldsOfARun[] = {
+    {"/frames", "number"},      {"/tracked", "number"},       {"/lost", "number"},   {"/broken", "number"},
+    {"/keyframes", "number"},   {"/loop_closures", "number"}, {"/wall_s", "number"}, {"/cpu_s", "number"},
+    {"/peak_rss_mb", "number"}, {"/stages_ms", "object"}};
 
 /// Throws std::runtime_error naming the first field that is missing or of another type.
 void check_fields(const Json& report) {
@@ -89,13 +112,16 @@ void check_fields(const Json& report) {
         throw std::runtime_error("is no report of planemap-run: " + why);
     };
     if (!report.is_object()) fail(std::string("is ") + report.type_name() + ", not object");
-    for (const Field& field : kFields) {
+    const auto check = [&](const Field& field) {
         const Json::json_pointer at(field.pointer);
         const std::string name = std::string(field.pointer).substr(1);
         if (!report.contains(at)) fail(name + " is missing");
         const std::string type = report.at(at).type_name();
         if (type != field.type) fail(name + " is " + type + ", not " + field.type);
-    }
+    };
+    for (const Field& field : kFields) check(field);
+    if (!is_exported(report))
+        for (const Field& field : kFieldsOfARun) check(field);
 }
 
 /// Why there is no report.json, as far as the folder tells, and what to do.
@@ -130,11 +156,14 @@ std::string report_markdown(const Json& report) {
     check_fields(report);
     try {
         std::string out = "# planemap: " + report.at("input").get<std::string>() + "\n\n";
-        add_tracking(report, out);
+        add_origin(report, out);
+        is_exported(report) ? add_what_is_known(report, out) : add_tracking(report, out);
+        add_accuracy(report, out);
+        add_remarks(report, out);
         out += losses_markdown(report);
         out += sizes_markdown(report);
         if (report.contains("soundness")) out += evaluation::soundness_markdown(report);
-        add_times(report, out);
+        if (!is_exported(report)) add_times(report, out);
         return out;
     } catch (const Json::exception& error) {
         throw std::runtime_error(std::string("is no report of planemap-run: ") + error.what());

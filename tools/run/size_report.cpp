@@ -156,31 +156,36 @@ std::string format(const char* pattern, double value) {
     return text;
 }
 
-void add_sizes(pipeline::Pipeline& pipeline, std::int64_t frames, Json& report) {
-    const map::PlaneMapper& mapper = pipeline.map().mapper();
-    const plane_map_t message = messages::to_message(mapper.map(), 0);
+void add_map_sizes(const PlaneMap& map, Json& report) {
+    const plane_map_t message = messages::to_message(map, 0);
     std::string bytes(static_cast<std::size_t>(message.getEncodedSize()), '\0');
     message.encode(bytes.data(), 0, message.getEncodedSize());
-    const CameraInfo* camera = pipeline.decoder().camera();
-    const double pixels = camera != nullptr ? double(camera->depth.width) * camera->depth.height : 0;
 
     Json sizes;
-    sizes["plane_map_memory"] = mapper.memory_bytes();
+    sizes["plane_map_memory"] = memory_bytes(map);
     sizes["plane_map_message"] = bytes.size();
-    for (const char* key : {"octomap_memory", "octomap_bt", "octomap_ot", "octomap_occupied_leaves"})
+    for (const char* key : {"octomap_memory", "octomap_bt", "octomap_ot", "octomap_occupied_leaves",
+                            "raw_cloud", "voxel_cloud_1cm"})
         sizes[key] = nullptr;
-    sizes["raw_cloud"] = points_bytes(pixels * static_cast<double>(frames));
-    sizes["voxel_cloud_1cm"] = nullptr;
     sizes["plane_map_zstd"] = zstd_bytes(bytes);
-    sizes["plane_map_working"] = mapper.working_bytes() + mapper.memory_bytes();
-    for (const char* key : {"octomap_bt_memory", "octomap_bt_occupied", "octomap_bt_zstd",
-                            "octomap_bt_occupied_zstd", "octomap_working"})
+    for (const char* key : {"plane_map_working", "octomap_bt_memory", "octomap_bt_occupied",
+                            "octomap_bt_zstd", "octomap_bt_occupied_zstd", "octomap_working"})
         sizes[key] = nullptr;
     report["octomap"] = {{"resolution_m", nullptr}, {"nodes", nullptr}};
     report["coverage"] = {{"leaves_explained", nullptr}, {"area_supported", nullptr}};
+    report["sizes_bytes"] = sizes;
+}
+
+void add_sizes(pipeline::Pipeline& pipeline, std::int64_t frames, Json& report) {
+    const map::PlaneMapper& mapper = pipeline.map().mapper();
+    const CameraInfo* camera = pipeline.decoder().camera();
+    const double pixels = camera != nullptr ? double(camera->depth.width) * camera->depth.height : 0;
+    add_map_sizes(mapper.map(), report);
+    Json& sizes = report["sizes_bytes"];
+    sizes["raw_cloud"] = points_bytes(pixels * static_cast<double>(frames));
+    sizes["plane_map_working"] = mapper.working_bytes() + mapper.memory_bytes();
     if (pipeline.octomap() != nullptr)
         add_octomap(pipeline.octomap()->builder(), mapper.map(), sizes, report);
-    report["sizes_bytes"] = sizes;
 }
 
 std::string sizes_markdown(const Json& report) {

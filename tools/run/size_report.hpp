@@ -9,11 +9,16 @@
 
 namespace planemap {
 
+struct PlaneMap;
+
 namespace pipeline {
 class Pipeline;
 }
 
-/// Adds "sizes_bytes", "octomap" and "coverage"; what there is no OctoMap for is null.
+/// Adds "sizes_bytes", "octomap" and "coverage"; what the map alone does not tell is null.
+void add_map_sizes(const PlaneMap& map, nlohmann::ordered_json& report);
+
+/// The same of a run; what there is no OctoMap for is null.
 void add_sizes(pipeline::Pipeline& pipeline, std::int64_t frames, nlohmann::ordered_json& report);
 
 /// The report's section on sizes. A saving is never printed without its coverage, nor an OctoMap's size

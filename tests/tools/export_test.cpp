@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// planemap-export makes of a stored map what planemap-run made of the map in memory.
+#include <gmock/gmock.h>
+
+#include "map/map_file.hpp"
+#include "messages/log.hpp"
+#include "tools/programs.hpp"
+
+namespace planemap {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using testing::HasSubstr;
+
+class ExportTest : public test::Programs {
+  protected:
+    void map_the_office() {
+        ASSERT_EQ(run("planemap-run", "'sim:office?frames=20' -q --no-octomap -o " + path("run")).exit_code,
+                  0);
+    }
+    std::string bytes(const std::string& file) { return read_file(folder_ / file); }
+};
+
+/// planes.json without what only a run knows.
+Json without_keyframes(const std::string& text) {
+    Json json = Json::parse(text);
+    for (Json& plane : json.at("planes")) plane.erase("keyframes");
+    return json;
+}
+
+TEST_F(ExportTest, GivesWhatTheRunGave) {
+    map_the_office();
+    const Outcome outcome = run("planemap-export", path("run/plane_map.lcmlog") + " -o " + path("out"));
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_EQ(outcome.err, "");
+    for (const char* file : {"trajectory.txt", "planes.mtl"})
+        EXPECT_EQ(bytes("run/" + std::string(file)), bytes("out/" + std::string(file))) << file;
+    // trajectory.txt rounds to a tenth of a micrometre: what is drawn of it has the same size and planes.
+    for (const char* file :
+         {"planes.ply", "planes.obj", "planes.glb", "floor_plan.geojson", "overhead.svg", "map.svg"}) {
+        EXPECT_NEAR(static_cast<double>(bytes("run/" + std::string(file)).size()),
+                    static_cast<double>(bytes("out/" + std::string(file)).size()), 64)
+            << file;
+    }
+    EXPECT_EQ(without_keyframes(bytes("run/planes.json")), without_keyframes(bytes("out/planes.json")));
+    EXPECT_TRUE(Json::parse(bytes("out/planes.json")).at("planes").at(0).at("keyframes").is_null());
+    const Json of_run = report("run"), exported = report("out");
+    for (const char* key : {"plane_map_memory", "plane_map_message", "plane_map_zstd"})
+        EXPECT_EQ(of_run.at("sizes_bytes").at(key), exported.at("sizes_bytes").at(key)) << key;
+    EXPECT_EQ(exported.at("tracked"), of_run.at("tracked"));
+    EXPECT_TRUE(exported.at("frames").is_null());
+    EXPECT_THAT(outcome.out, HasSubstr("are not known"));
+    EXPECT_EQ(run("planemap-report", path("out")).exit_code, 0);
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "out/.partial"));
+}
+
+TEST_F(ExportTest, KeepsWhatIsNotItsOwn) {
+    map_the_office();
+    const std::string map = path("run/plane_map.lcmlog"), planes = bytes("run/planes.json");
+    expect_error("planemap-export", map + " -o " + path("run"), "planes.json: is there");
+    EXPECT_EQ(planes, bytes("run/planes.json"));
+    ASSERT_EQ(run("planemap-export", map + " --replace -q -o " + path("run")).exit_code, 0);
+    EXPECT_NE(planes, bytes("run/planes.json"));
+
+    // As a live session leaves a folder.
+    std::filesystem::create_directory(folder_ / "live");
+    std::filesystem::copy(folder_ / "run/plane_map.lcmlog", folder_ / "live");
+    write_file(folder_ / "live/octomap.bt", "of the same session");
+    for (int time = 0; time < 2; ++time) {
+        const Outcome outcome = run("planemap-export", path("live/plane_map.lcmlog") + " -o " + path("live"));
+        ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+        EXPECT_THAT(outcome.out, HasSubstr("no trajectory"));
+    }
+    EXPECT_EQ(bytes("live/octomap.bt"), "of the same session");
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "live/trajectory.txt"));
+    EXPECT_EQ(bytes("live/planes.json"), bytes("run/planes.json"));
+}
+
+TEST_F(ExportTest, BadInputIsOneLine) {
+    const std::string out = " -o " + path("out");
+    expect_error("planemap-export", path("none.lcmlog") + out, "none.lcmlog");
+    expect_error("planemap-export", path("") + out, "is a folder");
+    write_file(folder_ / "text.lcmlog", "a letter, not a log\n");
+    expect_error("planemap-export", path("text.lcmlog") + out, "no LCM log");
+    messages::LogEvent event{0, 0, "OTHER", {1, 2, 3}};
+    write_file(folder_ / "other.lcmlog", messages::encode_event(event));
+    expect_error("planemap-export", path("other.lcmlog") + out, "holds no map");
+    event = {0, 0, "PLANEMAP_MAP", std::vector<std::uint8_t>(60, 7)};
+    write_file(folder_ / "old.lcmlog", messages::encode_event(event));
+    expect_error("planemap-export", path("old.lcmlog") + out, "the format of another planemap");
+    const std::string whole = map::plane_map_log({});
+    write_file(folder_ / "cut.lcmlog", whole.substr(0, whole.size() - 5));
+    expect_error("planemap-export", path("cut.lcmlog") + out, "cut short");
+    map::write_plane_map(folder_ / "empty.lcmlog", {});
+    expect_error("planemap-export", path("empty.lcmlog --trajectory ") + path("none.txt") + out, "none.txt");
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
+    const Outcome empty = run("planemap-export", path("empty.lcmlog") + out);
+    EXPECT_EQ(empty.exit_code, 0) << empty.err;
+    EXPECT_THAT(empty.err, HasSubstr("has no planes"));
+}
+
+}  // namespace
+}  // namespace planemap

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "export/export.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "core/files.hpp"
+#include "map/map_file.hpp"
+#include "run/map_results.hpp"
+#include "run/report.hpp"
+#include "run/size_report.hpp"
+
+namespace planemap {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+/// Both there, and one file.
+bool same_file(const fs::path& a, const fs::path& b) {
+    std::error_code error;
+    return fs::equivalent(a, b, error) && !error;
+}
+
+/// The trajectory's file; empty if there is none.
+fs::path trajectory_file(const ExportOptions& options) {
+    if (!options.trajectory.empty()) return options.trajectory;
+    const fs::path beside = options.map.parent_path() / "trajectory.txt";
+    std::error_code ignored;
+    return fs::exists(beside, ignored) ? beside : fs::path();
+}
+
+/// The names in the output folder that are the export's. What it is made from stays as it is; in a folder of
+/// its own nothing may stand beside it that is of another map.
+std::vector<std::string> export_names(const ExportOptions& options, const fs::path& trajectory) {
+    std::vector<std::string> names = map_result_names();
+    if (!same_file(options.map, options.output / "plane_map.lcmlog")) {
+        names.emplace_back("octomap.bt");
+        return names;
+    }
+    std::erase(names, "plane_map.lcmlog");
+    if (trajectory.empty() || same_file(trajectory, options.output / "trajectory.txt"))
+        std::erase(names, "trajectory.txt");
+    return names;
+}
+
+bool holds_an_export(const fs::path& folder) {
+    try {
+        return read_report(folder).value("exported", false);
+    } catch (const std::exception&) {
+        return false;  // no report: then nothing there is known to be an export's
+    }
+}
+
+/// Throws if results that say more, or are of another map, would be lost.
+void require_ours(const ExportOptions& options, const std::vector<std::string>& names) {
+    if (options.replace || holds_an_export(options.output)) return;
+    std::error_code ignored;
+    for (const std::string& name : names) {
+        if (fs::exists(options.output / name, ignored)) {
+            throw std::runtime_error(
+                (options.output / name).string() +
+                ": is there, and not of an earlier export: give another --output, or --replace");
+        }
+    }
+}
+
+Json report_of(const ExportOptions& options, const PlaneMap& map, const Trajectory* trajectory,
+               const std::vector<std::string>& warnings, const Json& about) {
+    Json report;
+    report["input"] = options.map.string();
+    report["exported"] = true;
+    report["frames"] = nullptr;
+    report["tracked"] = trajectory == nullptr ? Json() : Json(trajectory->size());
+    for (const char* key : {"lost", "broken", "interrupted", "keyframes", "loop_closures"})
+        report[key] = nullptr;
+    report["planes"] = map.planes.size();
+    for (const char* key : {"wall_s", "cpu_s", "peak_rss_mb", "stages_ms", "frames_per_s_without_octomap"})
+        report[key] = nullptr;
+    report["complaints"] = Json::array();
+    add_map_sizes(map, report);
+    report["warnings"] = warnings;
+    report.update(about);
+    return report;
+}
+
+}  // namespace
+
+Exported export_map(const ExportOptions& options, const Json& about) {
+    Exported exported;
+    const PlaneMap map = map::read_plane_map(options.map);
+    const fs::path file = trajectory_file(options);
+    Trajectory trajectory;
+    if (!file.empty()) trajectory = read_trajectory(file, &exported.remarks);
+    std::vector<std::string> warnings;
+    if (map.planes.empty()) warnings.push_back(options.map.string() + ": its map has no planes");
+    const std::vector<std::string> names = export_names(options, file);
+    require_ours(options, names);
+    ResultFolder folder(options.output, names);
+
+    MapSource source{map, nullptr, [] { return std::nullopt; }};
+    if (!file.empty()) source.trajectory = [&trajectory] { return trajectory; };
+    const Json report = report_of(options, map, file.empty() ? nullptr : &trajectory, warnings, about);
+    std::vector<Result> results = essential_results(source);
+    for (const auto& more : {report_results(report), drawn_results(source)})
+        results.insert(results.end(), more.begin(), more.end());
+    try {
+        for (const Result& result : results) {
+            if (std::find(names.begin(), names.end(), result.name) == names.end()) continue;
+            folder.make(result);
+            exported.files.push_back(result.name);
+        }
+        folder.replace();
+    } catch (const std::exception&) {
+        folder.discard();
+        throw;
+    }
+    exported.report = report_markdown(report);
+    for (const auto& more : {warnings, folder.take_notes()})
+        exported.remarks.insert(exported.remarks.end(), more.begin(), more.end());
+    return exported;
+}
+
+}  // namespace planemap

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The results that follow from a map, whether a run has it in memory or a file holds it.
+#pragma once
+
+#include <functional>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/plane_map.hpp"
+#include "core/trajectory.hpp"
+#include "exports/exports.hpp"
+#include "results/result_folder.hpp"
+
+namespace planemap {
+
+/// A map and what is known beside it. It must outlive the results made of it.
+struct MapSource {
+    const PlaneMap& map;
+    std::function<Trajectory()> trajectory;  ///< asked when a file needs it; empty: not known
+    std::function<std::optional<exports::Sightings>()> sightings;
+};
+
+/// What nobody wants to lose, small: plane_map.lcmlog, trajectory.txt where it is known, planes.json.
+std::vector<Result> essential_results(const MapSource& source);
+
+/// What can be had from the essential results: planes.ply, .obj, .mtl and .glb, the floor plan, the drawings.
+std::vector<Result> drawn_results(const MapSource& source);
+
+/// report.json and report.md; nothing if the report is null.
+std::vector<Result> report_results(const nlohmann::ordered_json& report);
+
+/// The names of all of them.
+std::vector<std::string> map_result_names();
+
+}  // namespace planemap
