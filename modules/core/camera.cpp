@@ -6,20 +6,15 @@
 #include <sstream>
 #include <string>
 
+#include "core/number_text.hpp"
 #include "core/validation.hpp"
 
 namespace planemap {
 
 namespace {
 
-std::string number_text(double value) {
-    std::ostringstream text;
-    text << value;
-    return text.str();
-}
-
 std::string range_text(double low, double high, const char* unit) {
-    return number_text(low) + " to " + number_text(high) + unit;
+    return short_number_text(low) + " to " + short_number_text(high) + unit;
 }
 
 void check(const PinholeCamera& camera, const std::string& name, FieldErrors& errors) {
@@ -42,10 +37,10 @@ void check(const PinholeCamera& camera, const std::string& name, FieldErrors& er
     const double aspect = camera.fx / camera.fy;
     if (!(camera.fx > 0 && camera.fy > 0 && std::isfinite(aspect))) return;
     if (aspect >= Limits::kLeastAspect && aspect <= Limits::kMostAspect) return;
-    errors.require(
-        false, name + ".fx / " + name + ".fy",
-        number_text(aspect) + " (" + number_text(camera.fx) + " / " + number_text(camera.fy) + " pixels)",
-        range_text(Limits::kLeastAspect, Limits::kMostAspect, ""));
+    errors.require(false, name + ".fx / " + name + ".fy",
+                   short_number_text(aspect) + " (" + short_number_text(camera.fx) + " / " +
+                       short_number_text(camera.fy) + " pixels)",
+                   range_text(Limits::kLeastAspect, Limits::kMostAspect, ""));
 }
 
 /// That 16 bits reach into the depth range.
@@ -59,8 +54,9 @@ void check_units(const CameraInfo& camera, FieldErrors& errors) {
     const double farthest = 65535 / units;
     if (units_good && camera.depth_min_m >= 0 && farthest <= camera.depth_min_m) {
         errors.require(false, "depth_units_per_metre", units,
-                       "such that 16 bits reach beyond depth_min_m, " + number_text(camera.depth_min_m) +
-                           " m: they end at " + number_text(farthest) + " m");
+                       "such that 16 bits reach beyond depth_min_m, " +
+                           short_number_text(camera.depth_min_m) + " m: they end at " +
+                           short_number_text(farthest) + " m");
     }
 }
 
@@ -92,13 +88,13 @@ void check_depth(const DepthNoise& noise, double min_m, double max_m, FieldError
     const double quietest = std::clamp(noise.offset_m, min_m, max_m);
     if (!(noise.sigma(quietest) >= CameraLimits::kLeastSigma_m)) {
         errors.require(
-            false, "noise at " + number_text(quietest) + " m", noise.sigma(quietest),
-            "at least " + number_text(CameraLimits::kLeastSigma_m) + " m (base_m, quadratic_per_m)");
+            false, "noise at " + short_number_text(quietest) + " m", noise.sigma(quietest),
+            "at least " + short_number_text(CameraLimits::kLeastSigma_m) + " m (base_m, quadratic_per_m)");
     }
     const double loudest = std::max(noise.sigma(min_m), noise.sigma(max_m));
     if (!(loudest <= max_m)) {
         errors.require(false, "noise within the depth range", loudest,
-                       "at most its far end, " + number_text(max_m) + " m");
+                       "at most its far end, " + short_number_text(max_m) + " m");
     }
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/geometry/inverse_depth.hpp"
+#include "core/rounding.hpp"
 
 namespace planemap {
 
@@ -171,7 +172,7 @@ void Footprints::fill_row(int v, const Shared& above, const Shared& below) {
 void Footprints::put(int x, int y, float w) {
     const float z = units_ / w;
     if (!(z >= 0.5f && z < 65534.5f)) return;
-    const auto raw = static_cast<std::uint16_t>(z + 0.5f);
+    const auto raw = nearest_whole<std::uint16_t>(z);
     std::uint16_t& target = out_(x, y);
     // A reading of 0, none, wraps to the farthest of all.
     if (static_cast<std::uint16_t>(target - 1) >= raw) target = raw;
@@ -192,7 +193,7 @@ void Footprints::fill_quad(const std::array<ColorPoint, 4>& c) {
     const float w0 = 0.25f * (c[0].w + c[1].w + c[2].w + c[3].w);
     if (high_x - low_x > longest_ || high_y - low_y > longest_) {
         if (x0 >= 0 && y0 >= 0 && x0 <= last_x_ && y0 <= last_y_)
-            put(static_cast<int>(x0 + 0.5f), static_cast<int>(y0 + 0.5f), w0);
+            put(nearest_whole<int>(x0), nearest_whole<int>(y0), w0);
         return;
     }
     const float aw = (c[2].w - c[0].w) / area2, bw = (c[3].w - c[1].w) / area2;

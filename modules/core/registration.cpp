@@ -11,6 +11,7 @@
 #include "core/footprints.hpp"
 #include "core/geometry/inverse_depth.hpp"
 #include "core/reprojection.hpp"
+#include "core/rounding.hpp"
 
 namespace planemap {
 
@@ -82,7 +83,7 @@ void take_nearest(const Splat& splat, const DepthImage& depth, DepthImage& regis
         for (int u = 0; u < depth.width; ++u) {
             if (z[u] < 0) continue;
             std::uint16_t& target = pixels[static_cast<int>(y[u]) * width + static_cast<int>(x[u])];
-            const auto value = static_cast<std::uint16_t>(z[u] + 0.5f);
+            const auto value = nearest_whole<std::uint16_t>(z[u]);
             // A reading of 0, none, wraps to the farthest of all.
             if (static_cast<std::uint16_t>(target - 1) >= value) target = value;
         }

@@ -14,6 +14,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/number_text.hpp"
 #include "core/stamp.hpp"
 #include "core/text_file.hpp"
 
@@ -148,12 +149,6 @@ double number(std::string_view text) {
     return error == std::errc() ? value : std::numeric_limits<double>::infinity();  // out of range
 }
 
-std::string number_text(double value) {
-    char text[32];
-    std::snprintf(text, sizeof(text), "%.6g", value);
-    return text;
-}
-
 std::string count_text(std::size_t count, const char* one, const char* more) {
     return std::to_string(count) + " " + (count == 1 ? one : more);
 }
@@ -192,8 +187,8 @@ class Reader {
         if (line[start] == '#') return;
         if (columns_ == 0) choose_form(line, numbers);
         check_count(numbers.size());
-        std::vector<double> values;
-        for (const std::string_view text : numbers) values.push_back(number(text));
+        std::vector<double> values(numbers.size());
+        std::transform(numbers.begin(), numbers.end(), values.begin(), number);
         if (!std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); }))
             fail("a value is not finite; expected " + expected());
         if (result_.format == TrajectoryFormat::kKitti) {
@@ -269,9 +264,9 @@ class Reader {
         const auto& [x, y, z, w] = order_.quaternion;
         const Eigen::Quaterniond q(v[w], v[x], v[y], v[z]);
         if (!(std::abs(q.norm() - 1) <= kLengthTolerance)) {
-            fail("the quaternion is not of unit length: qx qy qz qw are " + number_text(q.norm()) +
-                 " long, must be " + number_text(1 - kLengthTolerance) + " to " +
-                 number_text(1 + kLengthTolerance));
+            fail("the quaternion is not of unit length: qx qy qz qw are " + short_number_text(q.norm()) +
+                 " long, must be " + short_number_text(1 - kLengthTolerance) + " to " +
+                 short_number_text(1 + kLengthTolerance));
         }
         const auto& [px, py, pz] = order_.position;
         check_position({v[px], v[py], v[pz]});
@@ -282,8 +277,8 @@ class Reader {
         constexpr const char* kNames[] = {"tx", "ty", "tz"};
         for (int i = 0; i < 3; ++i) {
             if (std::abs(position[i]) <= kFarthest_m) continue;
-            fail(std::string(kNames[i]) + " is " + number_text(position[i]) + " m, must be " +
-                 number_text(-kFarthest_m) + " to " + number_text(kFarthest_m) + " m");
+            fail(std::string(kNames[i]) + " is " + short_number_text(position[i]) + " m, must be " +
+                 short_number_text(-kFarthest_m) + " to " + short_number_text(kFarthest_m) + " m");
         }
     }
 

@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/validation.hpp"
 
-#include <sstream>
 #include <stdexcept>
+
+#include "core/number_text.hpp"
 
 namespace planemap {
 
 void FieldErrors::require(bool ok, std::string_view field, double value, std::string_view allowed) {
-    if (ok) return;
-    std::ostringstream number;
-    number << value;
-    require(ok, field, number.str(), allowed);
+    if (!ok) require(ok, field, short_number_text(value), allowed);
 }
 
 void FieldErrors::require(bool ok, std::string_view field, std::string_view value, std::string_view allowed) {

@@ -421,6 +421,10 @@ void Flags::add_positional(const std::string& name, std::string& field, const st
     impl_->checked(option, field, check_of(field));
 }
 
+std::string Flags::program() const {
+    return impl_->app.get_name();
+}
+
 int Flags::parse(int argc, const char* const* argv) {
     const CLI::App& app = impl_->app;
     const auto wrong = [&](const std::string& what) {

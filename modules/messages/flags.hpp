@@ -57,6 +57,9 @@ class Flags {
     void add_positional(const std::string& name, std::string& field, const std::string& description,
                         bool required = true);
 
+    /// The program's name.
+    std::string program() const;
+
     /// Returns -1 to go on, or the exit code: 0 after --help, --help-all, --version and --dump-config, 2 for
     /// wrong flags (said in one line on stderr; a flag that is not known with the nearest one that is).
     int parse(int argc, const char* const* argv);

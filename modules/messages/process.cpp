@@ -123,6 +123,11 @@ int run_main(const std::string& program, const std::function<int()>& body) {
     }
 }
 
+int run_program(Flags& flags, int argc, const char* const* argv, const std::function<int()>& body) {
+    const int parsed = flags.parse(argc, argv);
+    return parsed >= 0 ? parsed : run_main(flags.program(), body);
+}
+
 void require_shared(const Bus& bus) {
     if (!bus.in_process()) return;
     throw std::invalid_argument("LCM URL '" + bus.url() +
@@ -140,9 +145,7 @@ Process::Process(std::string module, const std::string& description)
 }
 
 int Process::run(int argc, char** argv, const std::function<std::unique_ptr<Shell>(Bus&)>& make_shell) {
-    const int parsed = flags_.parse(argc, argv);
-    if (parsed >= 0) return parsed;
-    return run_main(program_, [&] {
+    return run_program(flags_, argc, argv, [&] {
         start_logging(program_, verbose_);
         catch_stop_signals();
         Bus bus(lcm_url_, channel_prefix_);

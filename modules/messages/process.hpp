@@ -42,6 +42,10 @@ void log_over_a_drawn_line(bool drawn);
 /// Runs body, and turns an exception that reaches the top into one line on stderr and exit code 1.
 int run_main(const std::string& program, const std::function<int()>& body);
 
+/// A program with flags: parses them, and runs `body` unless they are wrong or ask for no more than text
+/// (--help). Returns the exit code: that of `body`, 1 for an error, 2 for wrong flags.
+int run_program(Flags& flags, int argc, const char* const* argv, const std::function<int()>& body);
+
 /// Throws std::invalid_argument naming the URL if no other process can be on the bus (memq://): a module
 /// there would wait for ever and not say why.
 void require_shared(const Bus& bus);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/rounding.hpp"
+
 namespace planemap::odometry {
 namespace {
 
@@ -65,12 +67,11 @@ std::vector<DepthSample> without_shutter(std::vector<DepthSample> samples, const
 
 PlanarPatches::PlanarPatches(const DepthImage& depth, const PinholeCamera& camera, const CameraInfo& info,
                              int cell_px, const Twist& over_readout)
-    : camera_(camera), cell_px_(cell_px), columns_(depth.width / cell_px), rows_(depth.height / cell_px) {
-    planes_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
+    : camera_(camera), cell_px_(cell_px), planes_(depth.width / cell_px, depth.height / cell_px) {
     const int needed = cell_px * cell_px / 4 * 3 / 4;  // of every other pixel of every other row
     const double centre = 0.5 * cell_px;
-    for (int row = 0; row < rows_; ++row) {
-        for (int column = 0; column < columns_; ++column) {
+    for (int row = 0; row < planes_.height; ++row) {
+        for (int column = 0; column < planes_.width; ++column) {
             CellSums sums;
             for (int j = 0; j < cell_px; j += 2) {
                 const std::uint16_t* readings = depth.row(row * cell_px + j) + column * cell_px;
@@ -91,7 +92,7 @@ PlanarPatches::PlanarPatches(const DepthImage& depth, const PinholeCamera& camer
             }
             if (sums.left(2, 2) < needed) continue;
             sums.left.triangularView<Eigen::StrictlyLower>() = sums.left.transpose();
-            Plane& plane = planes_[static_cast<std::size_t>(row * columns_ + column)];
+            Plane& plane = planes_(column, row);
             plane = fit_cell(sums, column * cell_px + centre, row * cell_px + centre, camera, info);
             if (!(plane.d > 0)) continue;
             ++count_;
@@ -103,9 +104,9 @@ PlanarPatches::PlanarPatches(const DepthImage& depth, const PinholeCamera& camer
 
 void PlanarPatches::lay_on(std::span<const PlanarRegion> regions, const DepthNoise& noise) {
     const double centre = 0.5 * (cell_px_ - 1);
-    for (int row = 0; row < rows_; ++row) {
-        for (int column = 0; column < columns_; ++column) {
-            Plane& plane = planes_[static_cast<std::size_t>(row * columns_ + column)];
+    for (int row = 0; row < planes_.height; ++row) {
+        for (int column = 0; column < planes_.width; ++column) {
+            Plane& plane = planes_(column, row);
             if (!(plane.d > 0)) continue;
             const Eigen::Vector3d ray =
                 camera_.unproject(column * cell_px_ + centre, row * cell_px_ + centre, 1);
@@ -127,10 +128,10 @@ void PlanarPatches::lay_on(std::span<const PlanarRegion> regions, const DepthNoi
 
 const Plane* PlanarPatches::at(const Eigen::Vector2d& pixel) const {
     if (!(pixel.x() >= -0.5 && pixel.y() >= -0.5 && pixel.x() < 1e5 && pixel.y() < 1e5)) return nullptr;
-    const int column = static_cast<int>(pixel.x() + 0.5) / cell_px_;
-    const int row = static_cast<int>(pixel.y() + 0.5) / cell_px_;
-    if (column >= columns_ || row >= rows_) return nullptr;
-    const Plane& plane = planes_[static_cast<std::size_t>(row * columns_ + column)];
+    const int column = nearest_whole<int>(pixel.x()) / cell_px_;
+    const int row = nearest_whole<int>(pixel.y()) / cell_px_;
+    if (!planes_.contains(column, row)) return nullptr;
+    const Plane& plane = planes_(column, row);
     return plane.d > 0 ? &plane : nullptr;
 }
 

@@ -49,8 +49,8 @@ class PlanarPatches {
 
   private:
     PinholeCamera camera_;
-    int cell_px_ = 1, columns_ = 0, rows_ = 0, count_ = 0;
-    std::vector<Plane> planes_;  ///< d = 0: none
+    int cell_px_ = 1, count_ = 0;
+    Image<Plane> planes_;  ///< of the cells; d = 0: none
 };
 
 struct PatchMatch {

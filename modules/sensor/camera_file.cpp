@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <stdexcept>
 #include <string>
 
 #include "core/nearest_name.hpp"
+#include "core/number_text.hpp"
 #include "core/sensor_preset.hpp"
 #include "core/text_file.hpp"
 #include "core/validation.hpp"
@@ -32,13 +32,6 @@ std::string joined(const std::vector<std::string>& names) {
     return text;
 }
 
-/// A limit for people to read.
-std::string number_text(double value) {
-    char text[32];
-    std::snprintf(text, sizeof(text), "%.6g", value);
-    return text;
-}
-
 /// What a number may be.
 struct Bounds {
     double low, high;
@@ -47,7 +40,8 @@ struct Bounds {
 
     bool hold(double value) const { return std::isfinite(value) && value >= low && value <= high; }
     std::string text() const {
-        return std::string(kind) + " from " + number_text(low) + " to " + number_text(high) + unit;
+        return std::string(kind) + " from " + short_number_text(low) + " to " + short_number_text(high) +
+               unit;
     }
 };
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/angle.hpp"
+#include "core/rounding.hpp"
 #include "core/validation.hpp"
 
 namespace planemap::simulator {
@@ -36,7 +37,7 @@ class RawScale {
           min_(static_cast<float>(options.min_m)),
           max_(static_cast<float>(std::min(options.max_m, 65534 / options.units_per_metre))) {}
     std::uint16_t operator()(float z) const {
-        return z >= min_ && z <= max_ ? static_cast<std::uint16_t>(z * units_ + 0.5f) : std::uint16_t{0};
+        return z >= min_ && z <= max_ ? nearest_whole<std::uint16_t>(z * units_) : std::uint16_t{0};
     }
 
   private:
@@ -58,7 +59,7 @@ struct Measurement {
             const float quantisation = step_at_1m * z * z;
             const float extra = std::sqrt(std::max(0.0f, sigma * sigma - quantisation * quantisation));
             const float disparity = m.disparity_at_1m * inverse[i] * (1 + extra * inverse[i] * noise[i]);
-            const float whole = static_cast<float>(static_cast<int>(disparity * m.steps + 0.5f));
+            const float whole = static_cast<float>(nearest_whole<int>(disparity * m.steps));
             depth[i] = m.disparity_at_1m * m.steps / std::max(whole, 1e-3f);
         }
     }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/rounding.hpp"
 #include "simulator/random.hpp"
 
 namespace planemap::simulator {
@@ -281,8 +282,7 @@ Texture make_texture(const Look& look, double width_m, double height_m, std::uin
     constexpr int kLevels = 6, kMultiple = 1 << (kLevels - 1), kMaxSide = 4096;
     const auto texels = [&](double metres) {
         const double wanted = metres / (texel_scale * texel_size(look.pattern));
-        return std::max(2, static_cast<int>(std::min<double>(wanted, kMaxSide) / kMultiple + 0.5)) *
-               kMultiple;
+        return std::max(2, nearest_whole<int>(std::min<double>(wanted, kMaxSide) / kMultiple)) * kMultiple;
     };
     Image<std::uint32_t> image(texels(width_m), texels(height_m));
     const auto step_x = static_cast<float>(width_m / image.width);

@@ -204,11 +204,8 @@ int run(const Arguments& arguments) {
 }  // namespace planemap::bench_map
 
 int main(int argc, char** argv) {
-    using namespace planemap;
-    bench_map::Arguments arguments;
+    using namespace planemap::bench_map;
+    Arguments arguments;
     arguments.sequences = "sim:office?seed=1..5,redkitchen";
-    return benchmark::run_program(
-        bench_map::kProgram, bench_map::description(), argc, argv,
-        [&](messages::Flags& flags) { bench_map::add_flags(flags, arguments); },
-        [&] { return bench_map::run(arguments); });
+    return planemap::benchmark::run_program(kProgram, description(), argc, argv, arguments, add_flags, run);
 }

@@ -126,12 +126,9 @@ int run(const Arguments& arguments) {
 }  // namespace planemap::bench_odometry
 
 int main(int argc, char** argv) {
-    using namespace planemap;
-    bench_odometry::Arguments arguments;
-    arguments.sequences = benchmark::names_of(bench_odometry::known_sequences());
-    arguments.cache = benchmark::default_cache_folder(bench_odometry::kProgram);
-    return benchmark::run_program(
-        bench_odometry::kProgram, bench_odometry::description(), argc, argv,
-        [&](messages::Flags& flags) { bench_odometry::add_flags(flags, arguments); },
-        [&] { return bench_odometry::run(arguments); });
+    using namespace planemap::bench_odometry;
+    Arguments arguments;
+    arguments.sequences = planemap::benchmark::names_of(known_sequences());
+    arguments.cache = planemap::benchmark::default_cache_folder(kProgram);
+    return planemap::benchmark::run_program(kProgram, description(), argc, argv, arguments, add_flags, run);
 }

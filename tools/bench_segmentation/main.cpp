@@ -99,11 +99,8 @@ int run(const Arguments& arguments) {
 }  // namespace planemap::bench
 
 int main(int argc, char** argv) {
-    using namespace planemap;
-    bench::Arguments arguments;
-    arguments.sequences = benchmark::names_of(bench::known_sequences());
-    return benchmark::run_program(
-        bench::kProgram, bench::description(), argc, argv,
-        [&](messages::Flags& flags) { bench::add_flags(flags, arguments); },
-        [&] { return bench::run(arguments); });
+    using namespace planemap::bench;
+    Arguments arguments;
+    arguments.sequences = planemap::benchmark::names_of(known_sequences());
+    return planemap::benchmark::run_program(kProgram, description(), argc, argv, arguments, add_flags, run);
 }

@@ -31,10 +31,10 @@ int run_program(const std::string& program, const std::string& description, int 
                 const std::function<void(messages::Flags&)>& add, const std::function<int()>& body) {
     messages::Flags flags(program, description);
     add(flags);
-    const int parsed = flags.parse(argc, argv);
-    if (parsed >= 0) return parsed;
-    messages::start_logging(program, false);
-    return messages::run_main(program, body);
+    return messages::run_program(flags, argc, argv, [&] {
+        messages::start_logging(program, false);
+        return body();
+    });
 }
 
 }  // namespace planemap::benchmark

@@ -34,4 +34,15 @@ std::function<void(std::int64_t frames)> frame_counter(const std::string& what, 
 int run_program(const std::string& program, const std::string& description, int argc, char** argv,
                 const std::function<void(messages::Flags&)>& add, const std::function<int()>& body);
 
+/// The same for a benchmark whose flags write into `arguments`: `add` adds them, and `run` takes what they
+/// said.
+template <typename Arguments>
+int run_program(const std::string& program, const std::string& description, int argc, char** argv,
+                Arguments arguments, void (*add)(messages::Flags&, Arguments&),
+                int (*run)(const Arguments&)) {
+    return run_program(
+        program, description, argc, argv, [&](messages::Flags& flags) { add(flags, arguments); },
+        [&] { return run(arguments); });
+}
+
 }  // namespace planemap::benchmark

@@ -262,10 +262,9 @@ void run(Arguments arguments) {
 }  // namespace planemap
 
 int main(int argc, char** argv) {
-    const std::string program = "planemap-evaluate";
     planemap::Arguments arguments;
     planemap::messages::Flags flags(
-        program,
+        "planemap-evaluate",
         "Compares a trajectory with the truth as the TUM RGB-D benchmark does: absolute "
         "trajectory error (ATE) after\n"
         "rigid alignment, and relative pose error (RPE) per frame and per second. For the RPE the truth's "
@@ -274,9 +273,7 @@ int main(int argc, char** argv) {
         "else interpolated between poses at most 0.1 s apart; where the truth is sparser, the RPE "
         "is not measured.");
     planemap::add_flags(flags, arguments);
-    const int parsed = flags.parse(argc, argv);
-    if (parsed >= 0) return parsed;
-    return planemap::messages::run_main(program, [&] {
+    return planemap::messages::run_program(flags, argc, argv, [&] {
         planemap::run(arguments);
         return 0;
     });

@@ -17,10 +17,8 @@ int main(int argc, char** argv) {
         "report.md beside it anew.");
     std::string folder_name;
     flags.add_positional("folder", folder_name, "Output folder of planemap-run");
-    const int parsed = flags.parse(argc, argv);
-    if (parsed >= 0) return parsed;
-    const std::filesystem::path folder = folder_name;
-    return planemap::messages::run_main("planemap-report", [&] {
+    return planemap::messages::run_program(flags, argc, argv, [&] {
+        const std::filesystem::path folder = folder_name;
         const nlohmann::ordered_json report = planemap::read_report(folder);
         std::string markdown;
         try {

@@ -197,9 +197,8 @@ int main(int argc, char** argv) {
         "Example: planemap-run sim:office --output out/office");
     planemap::RunOptions options;
     planemap::add_run_flags(flags, options);
-    const int parsed = flags.parse(argc, argv);
-    if (parsed >= 0) return parsed;
-    const nlohmann::ordered_json about = planemap::run_info(flags);
-    planemap::messages::start_logging("planemap-run", options.verbose);
-    return planemap::messages::run_main("planemap-run", [&] { return planemap::run(options, about); });
+    return planemap::messages::run_program(flags, argc, argv, [&] {
+        planemap::messages::start_logging(flags.program(), options.verbose);
+        return planemap::run(options, planemap::run_info(flags));
+    });
 }

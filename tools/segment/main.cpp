@@ -68,7 +68,6 @@ int main(int argc, char** argv) {
         known.push_back("--");
         known.push_back(files.front().c_str());
     }
-    const int parsed = flags.parse(static_cast<int>(known.size()), known.data());
-    if (parsed >= 0) return parsed;
-    return messages::run_main(kProgram, [&] { return run(options, camera); });
+    return messages::run_program(flags, static_cast<int>(known.size()), known.data(),
+                                 [&] { return run(options, camera); });
 }

@@ -137,10 +137,9 @@ int main(int argc, char** argv) {
     flags.add("o,output", output, "The log to write");
     flags.required();
     flags.add(encoding_of(options));
-    const int parsed = flags.parse(argc, argv);
-    if (parsed >= 0) return parsed;
-    options.speed = 0;  // as fast as it can be written
-    planemap::messages::start_logging("planemap-simulate", false);
-    return planemap::messages::run_main("planemap-simulate",
-                                        [&] { return planemap::simulate(world, output, options); });
+    return planemap::messages::run_program(flags, argc, argv, [&] {
+        planemap::messages::start_logging(flags.program(), false);
+        options.speed = 0;  // as fast as it can be written
+        return planemap::simulate(world, output, options);
+    });
 }
