@@ -170,7 +170,7 @@ void OptionList::check(FieldErrors& errors) const {
         const bool real = std::holds_alternative<double*>(option.field);
         const bool endless = !std::isfinite(option.range.low) || !std::isfinite(option.range.high);
         std::string allowed = option.allowed();
-        if (real && endless) allowed = allowed.empty() ? "finite" : "finite and " + allowed;
+        if (real && endless) allowed.insert(0, allowed.empty() ? "finite" : "finite and ");
         errors.require(option.is_allowed(), option.name, option.value(), allowed);
     }
 }

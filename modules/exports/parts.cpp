@@ -145,6 +145,7 @@ std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> footprint(const MapPlan
     std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> pieces, joined;
     for (const auto& ring : world_rings(plane)) {
         std::vector<Eigen::Vector2d> points;
+        points.reserve(ring.size());
         for (const Eigen::Vector3d& p : ring) points.push_back((level_from_world * p).head<2>());
         const auto [from, to] = std::minmax_element(points.begin(), points.end(), less);
         if (from != to) pieces.emplace_back(*from, *to);

@@ -250,12 +250,13 @@ std::vector<PointPair> make_pairs(const KeyframeView& a, const KeyframeView& b,
 /// How many cells of a 4 by 4 grid over the view's directions the points fall into.
 int occupied_cells(const KeyframeView& view, const std::vector<Eigen::Vector3d>& points) {
     std::bitset<16> cells;
+    const auto cell = [](double at) {
+        return static_cast<std::size_t>(std::clamp(static_cast<int>(at), 0, 3));
+    };
     const Eigen::Vector2d span = (view.high - view.low).cwiseMax(1e-9);
     for (const Eigen::Vector3d& p : points) {
         const Eigen::Vector2d at = (p.head<2>() / p.z() - view.low).cwiseQuotient(span) * 4;
-        const int x = std::clamp(static_cast<int>(at.x()), 0, 3),
-                  y = std::clamp(static_cast<int>(at.y()), 0, 3);
-        cells.set(static_cast<std::size_t>(4 * y + x));
+        cells.set(4 * cell(at.y()) + cell(at.x()));
     }
     return static_cast<int>(cells.count());
 }

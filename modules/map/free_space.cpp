@@ -23,7 +23,8 @@ bool may_see(const Sight& sight, const Eigen::Vector3d& center_camera, double ra
         return low * center.z() - across > radius * std::sqrt(1 + low * low) ||
                across - high * center.z() > radius * std::sqrt(1 + high * high);
     };
-    const Eigen::Vector2d low = sight.low(), high = sight.high();
+    const Eigen::Vector2d& low = sight.low();
+    const Eigen::Vector2d high = sight.high();
     return !beside(low.x(), high.x(), center.x()) && !beside(low.y(), high.y(), center.y());
 }
 
@@ -77,7 +78,8 @@ std::optional<FreeSpace::Footprint> FreeSpace::footprint_of(const PlaneEstimate&
     const Eigen::Matrix3d& axes = footprint.camera_from_grid.linear();
     // The pyramid of the image, down to its reach, laid on the plane.
     const double reach = sight.reach();
-    const Eigen::Vector2d low = sight.low(), high = sight.high();
+    const Eigen::Vector2d& low = sight.low();
+    const Eigen::Vector2d high = sight.high();
     const Eigen::Vector2d foot(-axes.col(0).dot(origin), -axes.col(1).dot(origin));
     double height_low = -axes.col(2).dot(origin), height_high = height_low;
     footprint.low = footprint.high = foot;

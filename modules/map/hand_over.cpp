@@ -19,7 +19,8 @@ std::vector<Eigen::Vector2d> samples_of(const StoredRegion& region, const Stored
     outline_in(Pose::Identity(), region, owner, polygon);
     std::vector<Eigen::Vector2d> samples;
     for (int i = 0; i < kSamples * kSamples; ++i) {
-        const Eigen::Vector2d share((i % kSamples + 0.5) / kSamples, (i / kSamples + 0.5) / kSamples);
+        const int row = i / kSamples, column = i % kSamples;
+        const Eigen::Vector2d share((column + 0.5) / kSamples, (row + 0.5) / kSamples);
         const Eigen::Vector2d p =
             region.half_extents.cast<double>().cwiseProduct(2 * share - Eigen::Vector2d::Ones());
         if (contains(polygon, p)) samples.push_back(p);

@@ -20,6 +20,7 @@ std::map<int, int> PlaneIds::carry_over(const std::vector<int>& now, const std::
         taken.insert(id);
     }
     std::vector<std::pair<double, std::pair<int, int>>> claims;
+    claims.reserve(votes.size());
     for (const auto& [pair, inliers] : votes) claims.push_back({-inliers, pair});
     std::sort(claims.begin(), claims.end());
     for (const auto& [inliers, pair] : claims) {

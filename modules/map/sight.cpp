@@ -41,7 +41,7 @@ Sight::Directions Sight::directions_of(const std::vector<PlanarRegion>& regions)
 
 /// Gives a region the cells that it covers as a whole, where it is nearer than those before.
 void Sight::fill(std::uint8_t region, const Plane& plane, const FlatPolygon& directions,
-                 std::array<double, kWidth * kHeight>& nearest) {
+                 std::array<double, kCells>& nearest) {
     Bitmap corners(0, 0, (kColumns + 63) / 64, kRows);
     corners.draw(directions, [&](const Eigen::Vector2d& v) -> Eigen::Vector2d {
         return (v - low_).cwiseProduct(per_cell_);
@@ -54,7 +54,7 @@ void Sight::fill(std::uint8_t region, const Plane& plane, const FlatPolygon& dir
             const Eigen::Vector3d ray(low_.x() + (x + 0.5) / per_cell_.x(),
                                       low_.y() + (y + 0.5) / per_cell_.y(), 1);
             const double depth = -plane.d / plane.normal.dot(ray);
-            const auto cell = static_cast<std::size_t>(y * kWidth + x);
+            const std::size_t cell = cell_at(x, y);
             if (!(depth > 0 && depth < nearest[cell])) continue;
             nearest[cell] = depth;
             cells_[cell] = region;
@@ -74,7 +74,7 @@ Sight::Sight(const std::vector<PlanarRegion>& regions) {
     if (!(low.x() < high.x() && low.y() < high.y())) return;
     low_ = low;
     per_cell_ = Eigen::Vector2d(kWidth, kHeight).cwiseQuotient(high - low);
-    std::array<double, kWidth * kHeight> nearest;
+    std::array<double, kCells> nearest;
     nearest.fill(std::numeric_limits<double>::infinity());
     for (std::size_t i = 0; i < directions.size(); ++i)
         if (!directions[i].vertices.empty())

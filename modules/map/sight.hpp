@@ -28,7 +28,7 @@ class Sight {
         const double x = (p_camera.x() / p_camera.z() - low_.x()) * per_cell_.x();
         const double y = (p_camera.y() / p_camera.z() - low_.y()) * per_cell_.y();
         if (!(x >= 0 && y >= 0 && x < kWidth && y < kHeight)) return kNone;
-        return cells_[static_cast<std::size_t>(static_cast<int>(y) * kWidth + static_cast<int>(x))];
+        return cells_[cell_at(static_cast<int>(x), static_cast<int>(y))];
     }
     /// The directions it covers: x / z and y / z in the camera.
     const Eigen::Vector2d& low() const { return low_; }
@@ -40,15 +40,20 @@ class Sight {
     double reach() const { return reach_; }
 
   private:
+    static constexpr std::size_t kCells = std::size_t{kWidth} * kHeight;
+    static std::size_t cell_at(int x, int y) {
+        return static_cast<std::size_t>(y) * kWidth + static_cast<std::size_t>(x);
+    }
+
     using Directions = std::vector<FlatPolygon>;  ///< outlines as x / z and y / z
     Directions directions_of(const std::vector<PlanarRegion>& regions);
     void fill(std::uint8_t region, const Plane& plane, const FlatPolygon& directions,
-              std::array<double, kWidth * kHeight>& nearest);
+              std::array<double, kCells>& nearest);
 
     double reach_ = 0;
     Eigen::Vector2d low_ = Eigen::Vector2d::Zero(), per_cell_ = Eigen::Vector2d::Ones();
-    std::array<std::uint8_t, kWidth* kHeight> cells_ = [] {
-        std::array<std::uint8_t, kWidth * kHeight> none{};
+    std::array<std::uint8_t, kCells> cells_ = [] {
+        std::array<std::uint8_t, kCells> none{};
         none.fill(kNone);
         return none;
     }();

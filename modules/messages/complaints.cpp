@@ -46,6 +46,7 @@ std::string Complaints::total(const Kind& kind) {
 
 std::vector<std::string> Complaints::totals() const {
     std::vector<std::string> lines;
+    lines.reserve(kinds_.size());
     for (const auto& [name, kind] : kinds_) lines.push_back(total(kind));
     return lines;
 }

@@ -61,7 +61,8 @@ std::vector<::octomap::point3d> StoredScan::points(const Pose& world_from_camera
     const DepthImage depth = inflated(deflated_, pinhole.width, pinhole.height);
     const Pose world_from_depth = world_from_camera * camera_.color_from_depth;
     std::vector<::octomap::point3d> points;
-    points.reserve(depth.pixels.size() / static_cast<std::size_t>(subsample * subsample));
+    const auto step = static_cast<std::size_t>(subsample);
+    points.reserve(depth.pixels.size() / (step * step));
     for (int v = 0; v < depth.height; v += subsample) {
         for (int u = 0; u < depth.width; u += subsample) {
             const std::uint16_t raw = depth(u, v);

@@ -54,8 +54,7 @@ std::vector<cv::Point2f> best_of_cells(std::vector<cv::KeyPoint> corners, const 
                                        const CameraInfo& info, const CornerOptions& options) {
     std::stable_sort(corners.begin(), corners.end(),
                      [](const auto& a, const auto& b) { return a.response > b.response; });
-    const int columns = depth.width / options.cell_px + 1, rows = depth.height / options.cell_px + 1;
-    std::vector<char> taken(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), 0);
+    Image<char> taken(depth.width / options.cell_px + 1, depth.height / options.cell_px + 1);
     std::vector<cv::Point2f> chosen;
     for (const cv::KeyPoint& corner : corners) {
         if (static_cast<int>(chosen.size()) >= options.max_corners) break;
@@ -63,7 +62,7 @@ std::vector<cv::Point2f> best_of_cells(std::vector<cv::KeyPoint> corners, const 
         if (u < kImageBorder || v < kImageBorder || u >= depth.width - kImageBorder ||
             v >= depth.height - kImageBorder)
             continue;
-        char& cell = taken[static_cast<std::size_t>((v / options.cell_px) * columns + u / options.cell_px)];
+        char& cell = taken(u / options.cell_px, v / options.cell_px);
         if (cell || sound_depth(depth, info, {u, v}, options.max_depth_spread) == 0) continue;
         cell = 1;
         chosen.push_back(corner.pt);

@@ -63,6 +63,7 @@ std::vector<const KnownKeyframe*> KnownKeyframes::candidates(const GrayImage& gr
     if (keyframes_.empty() || count < 1) return {};
     const std::vector<float> thumbnail = make_thumbnail(gray);
     std::vector<std::pair<double, const KnownKeyframe*>> ranked;
+    ranked.reserve(keyframes_.size());
     for (const KnownKeyframe& keyframe : keyframes_)
         ranked.emplace_back(&keyframe == &keyframes_.back() ? 2.0 : likeness(thumbnail, keyframe.thumbnail),
                             &keyframe);

@@ -7,6 +7,7 @@ namespace planemap::odometry {
 
 std::vector<cv::Point2f> LocalKeyframe::pixels() const {
     std::vector<cv::Point2f> pixels;
+    pixels.reserve(points.size());
     for (const TrackPoint& point : points) pixels.push_back(point.pixel);
     return pixels;
 }

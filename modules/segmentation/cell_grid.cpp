@@ -60,8 +60,9 @@ void CellGrid::fit() {
         for (int x = 0; x < columns_; x += kGroup) {
             const int first = std::min(x, columns_ - kGroup);  // the last group may overlap the one before
             const int u = first * kCellPx, v = y * kCellPx;
-            const auto cell = static_cast<std::size_t>(y * columns_ + first);
-            kernels_->fit(rules_, {depth_->row(v) + u, depth_->width, u, v}, &cells_[cell], &sums_[cell]);
+            const std::ptrdiff_t cell = static_cast<std::ptrdiff_t>(y) * columns_ + first;
+            kernels_->fit(rules_, {depth_->row(v) + u, depth_->width, u, v}, cells_.data() + cell,
+                          sums_.data() + cell);
         }
     }
 }

@@ -231,6 +231,7 @@ std::vector<ListedFrame> associate(const std::vector<ListedImage>& depth,
     }
     std::sort(pairs.begin(), pairs.end());
     std::vector<ListedFrame> frames;
+    frames.reserve(depth.size());
     for (const ListedImage& image : depth) frames.push_back({image, std::nullopt});
     std::vector<bool> taken(color.size(), false);
     for (const auto& [gap, i, j] : pairs) {

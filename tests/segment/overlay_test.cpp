@@ -33,11 +33,12 @@ TEST(Overlay, EachRegionHasAColourOfItsOwnAndWhatIsUnreadIsBlack) {
 
 TEST(Overlay, WorksWithoutRegionsAndOnTinyImages) {
     for (const int side : {1, 2, 5}) {
+        const auto pixels = static_cast<std::size_t>(side) * static_cast<std::size_t>(side);
         const CameraInfo camera = scene::camera(side, side);
         segmentation::Segmentation none;
         none.labels = Image<std::uint16_t>(side, side);
         const RgbImage picture = draw_overlay(DepthImage(side, side, 1000), camera, none);
-        EXPECT_EQ(picture.pixels.size(), static_cast<std::size_t>(side * side));
+        EXPECT_EQ(picture.pixels.size(), pixels);
         std::set<std::tuple<int, int, int>> colors;
         for (const Rgb& color : picture.pixels) colors.insert({color.r, color.g, color.b});
         for (const auto& [r, g, b] : colors) EXPECT_TRUE(r == g && g == b) << "grey: no region";

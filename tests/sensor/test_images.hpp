@@ -45,7 +45,8 @@ inline std::string encode_depth_png(const DepthImage& depth) {
 }
 
 inline std::string encode_jpeg(int width, int height) {
-    std::vector<std::uint8_t> pixels(static_cast<std::size_t>(3 * width * height));
+    std::vector<std::uint8_t> pixels(std::size_t{3} * static_cast<std::size_t>(width) *
+                                     static_cast<std::size_t>(height));
     for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i] = static_cast<std::uint8_t>(i * 7);
     tjhandle encoder = tjInitCompress();
     unsigned char* bytes = nullptr;

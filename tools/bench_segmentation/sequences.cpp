@@ -53,6 +53,7 @@ std::vector<Plane> fit_surfaces(const Image<std::uint16_t>& surfaces, const Dept
         }
     }
     std::vector<Plane> planes;
+    planes.reserve(moments.size());
     for (const Moments& m : moments) planes.push_back(fit_plane(m).plane);
     return planes;
 }
@@ -102,6 +103,7 @@ Truth truth_of_view(const simulator::World& world, const simulator::View& view, 
     const std::vector<std::size_t> first = first_on_same_plane(world);
     const Pose camera_from_world = view.world_from_camera.inverse();
     std::vector<Plane> planes;
+    planes.reserve(world.surfaces.size());
     for (const simulator::Surface& surface : world.surfaces)
         planes.push_back(camera_from_world * surface.plane);
     Image<std::uint16_t> surfaces(depth.width, depth.height);
@@ -199,6 +201,7 @@ Sequence open_sequence(const SequenceInfo& info, int frames, const std::filesyst
 std::vector<std::size_t> evenly_spread(std::size_t size, std::size_t count) {
     std::vector<std::size_t> indices;
     count = std::min(size, count);
+    indices.reserve(count);
     for (std::size_t i = 0; i < count; ++i) indices.push_back(i * size / count);
     return indices;
 }

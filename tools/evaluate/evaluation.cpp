@@ -46,6 +46,7 @@ std::size_t closest_index(const std::vector<double>& values, double t) {
 /// Stamps in microseconds, which a double holds exactly.
 std::vector<double> stamps_of(const Trajectory& trajectory) {
     std::vector<double> stamps;
+    stamps.reserve(trajectory.size());
     for (const StampedPose& pose : trajectory) stamps.push_back(static_cast<double>(pose.utime));
     return stamps;
 }

@@ -86,12 +86,14 @@ Json figure_of(const Statistics& errors, double Statistics::*figure) {
 
 Statistics errors_of(const std::vector<PairMeasure>& pairs) {
     std::vector<double> errors;
+    errors.reserve(pairs.size());
     for (const PairMeasure& pair : pairs) errors.push_back(pair.error());
     return statistics(std::move(errors));
 }
 
 Statistics relative_errors_of(const std::vector<PairMeasure>& pairs) {
     std::vector<double> errors;
+    errors.reserve(pairs.size());
     for (const PairMeasure& pair : pairs) errors.push_back(100 * pair.error() / pair.truth);
     return statistics(std::move(errors));
 }

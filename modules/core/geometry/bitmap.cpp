@@ -35,7 +35,7 @@ void Bitmap::flip_right_of(Eigen::Vector2d a, Eigen::Vector2d b) {
         const double first = std::ceil(x);
         if (!(first < beyond)) continue;
         const int at = static_cast<int>(std::max(first, 0.0));
-        bits_[static_cast<std::size_t>(y * words_ + (at >> 6))] ^= std::uint64_t{1} << (at & 63);
+        (bits_.data() + static_cast<std::ptrdiff_t>(y) * words_)[at >> 6] ^= std::uint64_t{1} << (at & 63);
     }
 }
 

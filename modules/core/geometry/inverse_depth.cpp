@@ -53,10 +53,10 @@ InverseDepth::InverseDepth(const DepthImage& depth, double units_per_metre, int 
         }
     }
     const float per_pixel = 1 / static_cast<float>(reach);
-    const std::ptrdiff_t down = static_cast<std::ptrdiff_t>(reach) * value.width;
+    const std::ptrdiff_t right = reach, down = right * value.width;
     for (int v = border; v < border + depth.height; ++v) {
         const float* row = value.row(v) + border;
-        slopes(row - 2 * reach, row - reach, row, row + reach, row + 2 * reach, depth.width, per_pixel,
+        slopes(row - 2 * right, row - right, row, row + right, row + 2 * right, depth.width, per_pixel,
                along_u.row(v) + border);
         slopes(row - 2 * down, row - down, row, row + down, row + 2 * down, depth.width, per_pixel,
                along_v.row(v) + border);

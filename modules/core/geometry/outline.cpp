@@ -36,7 +36,8 @@ void mark_kept(const Ring& path, std::size_t first, std::size_t last, double tol
     while (!pending.empty()) {
         const auto [from, to] = pending.back();
         pending.pop_back();
-        const Eigen::Vector2d a = path[from], ab = path[to] - a;
+        const Eigen::Vector2d& a = path[from];
+        const Eigen::Vector2d ab = path[to] - a;
         const double length2 = ab.squaredNorm(), per_length2 = length2 > 0 ? 1 / length2 : 0;
         double worst = tolerance * tolerance;
         std::size_t worst_at = from;
