@@ -8,14 +8,7 @@ set -euo pipefail
 
 bin="$1"
 compare_maps="$2"
-root="$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)"
-url="udpm://239.255.76.67:$((20000 + $$ % 20000))?ttl=0&recv_buf_size=4194304"
 speed="${PLANEMAP_LIVE_SPEED:-0.5}" # of the recording: nothing may be dropped, on a busy machine neither
-
-fail() {
-    echo "live_map_test: $*" >&2
-    exit 1
-}
 
 source "$(dirname "${BASH_SOURCE[0]}")/own_network.sh"
 enter_own_network "$0" "$@"
@@ -27,14 +20,11 @@ stop_launch_at_exit
 expect_the_same() {
     echo "== $2"
     "$bin/planemap-run" "$1" --no-octomap -q --output "$work/$2/offline" >/dev/null || fail "planemap-run ended with $?"
-    launch --no-sensor --log "$work/$2/live.lcmlog" --output "$work/$2/live" 2>"$work/$2.stderr" &
-    launch_pid=$!
-    wait_for_modules "$work/$2/live.lcmlog"
-    lcm-logplayer -s "$speed" --lcm-url="$url" -e 'OPENNI_FRAME|PLANEMAP_CAMERA_INFO' "$1" >/dev/null
-    sleep 1
-    kill -TERM "$launch_pid"
-    wait "$launch_pid" || fail "tools/launch ended with code $?"
-    launch_pid=
+    replay "$1" "$work/$2/live.lcmlog" "$work/$2/live" -s "$speed" 2>"$work/$2.stderr" || {
+        local code=$?
+        cat "$work/$2.stderr" >&2
+        fail "the replay ended with code $code"
+    }
     grep "stopped:" "$work/$2.stderr" || true
     "$compare_maps" "$work/$2/offline/plane_map.lcmlog" "$work/$2/live/plane_map.lcmlog" ||
         fail "$2: the live map is not planemap-run's"

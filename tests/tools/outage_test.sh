@@ -10,7 +10,6 @@
 set -euo pipefail
 
 bin="$1"
-root="$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)"
 modules=(segmentation odometry graph map octomap)
 
 source "$(dirname "${BASH_SOURCE[0]}")/own_network.sh"

@@ -2,6 +2,14 @@
 # shellcheck shell=bash
 # For scripts that put modules as separate processes on udpm; to be sourced.
 
+root="$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)"
+url="udpm://239.255.76.67:$((20000 + $$ % 20000))?ttl=0&recv_buf_size=4194304"
+
+fail() {
+    echo "$(basename "$0" .sh): $*" >&2
+    exit 1
+}
+
 # Loopback and its route for multicast; taking the interface down removes the route.
 raise_loopback() {
     ip link set lo up
@@ -58,6 +66,22 @@ wait_for_modules() {
 
 # launch ARGS...: tools/launch of $root with $bin and $url in place of this subshell; its process id goes into launch_pid.
 launch() { exec setpriv --pdeathsig TERM "$root/tools/launch" --bin "$bin" --lcm-url "$url" "$@"; }
+
+# replay LOG RECORDED OUTPUT PLAYER-ARGS...: plays what a camera sent in LOG into the modules; all that is on the bus goes
+# into the log RECORDED, and the map into the folder OUTPUT. Returns the exit code of what went wrong.
+replay() {
+    local log="$1" recorded="$2" output="$3" code=0
+    shift 3
+    launch --no-sensor --log "$recorded" --output "$output" &
+    launch_pid=$!
+    wait_for_modules "$recorded"
+    lcm-logplayer "$@" --lcm-url="$url" -e 'OPENNI_FRAME|PLANEMAP_CAMERA_INFO' "$log" >/dev/null || return
+    sleep 1
+    kill -TERM "$launch_pid"
+    wait "$launch_pid" || code=$?
+    launch_pid=
+    return "$code"
+}
 
 # When the script ends, the launch still running is stopped and the folder $work removed.
 stop_launch_at_exit() {

@@ -7,14 +7,7 @@
 set -euo pipefail
 
 bin="$1"
-root="$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)"
 frames=90
-url="udpm://239.255.76.67:$((20000 + $$ % 20000))?ttl=0&recv_buf_size=4194304"
-
-fail() {
-    echo "process_test: $*" >&2
-    exit 1
-}
 
 source "$(dirname "${BASH_SOURCE[0]}")/own_network.sh"
 enter_own_network "$0" "$@"
@@ -36,14 +29,7 @@ recorded="$(events "$work/live.lcmlog" OPENNI_FRAME)"
 expect_map "$work/live.lcmlog" "$work/live"
 
 echo "== replay"
-launch --no-sensor --log "$work/replay.lcmlog" --output "$work/replay" &
-launch_pid=$!
-wait_for_modules "$work/replay.lcmlog"
-lcm-logplayer --lcm-url="$url" -e 'OPENNI_FRAME|PLANEMAP_CAMERA_INFO' "$work/live.lcmlog"
-sleep 1
-kill -TERM "$launch_pid"
-wait "$launch_pid" || fail "tools/launch --no-sensor ended with code $?"
-launch_pid=
+replay "$work/live.lcmlog" "$work/replay.lcmlog" "$work/replay" || fail "the replay ended with code $?"
 replayed="$(events "$work/replay.lcmlog" OPENNI_FRAME)"
 [[ "$replayed" -eq "$frames" ]] || fail "$replayed of $frames frames arrived from the replay"
 expect_map "$work/replay.lcmlog" "$work/replay"
