@@ -50,7 +50,7 @@ std::size_t memory_bytes(const KeyframeView& view) {
                         view.regions.capacity() * sizeof(PlanarRegion);
     for (const PlanarRegion& region : view.regions) {
         for (const Ring& ring : region.outline.rings)
-            bytes += sizeof ring + ring.capacity() * sizeof(Eigen::Vector2d);
+            bytes += sizeof(Ring) + ring.capacity() * sizeof(Eigen::Vector2d);
     }
     return bytes;
 }

@@ -173,9 +173,9 @@ void Topology::hand_over(const Tie& to_keeper, int gone, const std::vector<Pose>
 }
 
 std::size_t Topology::memory_bytes() const {
-    std::size_t bytes = 0;
+    std::size_t bytes = links_.size() * sizeof(std::vector<Link>);
     for (const auto* ties : {&odometry_, &loops_, &gaps_}) bytes += ties->capacity() * sizeof(Tie);
-    for (const auto& links : links_) bytes += sizeof links + links.capacity() * sizeof(Link);
+    for (const std::vector<Link>& links : links_) bytes += links.capacity() * sizeof(Link);
     return bytes;
 }
 

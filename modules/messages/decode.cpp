@@ -72,7 +72,8 @@ class Walker {
     std::size_t at_ = 0;
 };
 
-constexpr std::size_t kTransform = 7 * 8;
+// Bytes on the wire.
+constexpr std::size_t kDouble = 8, kFloat = 4, kTransform = 7 * kDouble;
 
 void walk_image(Walker& w) {
     w.skip(8 + 4 * 4, "image header");
@@ -87,7 +88,7 @@ void walk_image(Walker& w) {
 }
 
 void walk_region(Walker& w) {
-    w.skip(8 * (3 + 1 + 1 + 3 + 6) + kTransform + 4 * (3 + 1), "region");
+    w.skip(kDouble * (3 + 1 + 1 + 3 + 6) + kTransform + kFloat * (3 + 1), "region");
     w.array(w.length("region.n_rings"), 4, "region.ring_sizes");
     w.array(w.length("region.n_vertices"), 8, "region.vertices");
 }
@@ -120,7 +121,7 @@ void walk(Walker& w, const kinect::frame_msg_t*) {
 void walk(Walker& w, const camera_info_t*) {
     w.skip(8 + 4, "utime");
     w.string("serial");
-    w.skip(2 * (8 + 32) + 1 + kTransform + 6 * 8, "intrinsics");
+    w.skip(2 * (8 + 32) + 1 + kTransform + 6 * kDouble, "intrinsics");
     w.skip(8 + 1 + kTransform, "body_from_camera");
 }
 void walk(Walker& w, const planar_regions_t*) {
@@ -129,10 +130,10 @@ void walk(Walker& w, const planar_regions_t*) {
     w.skip(8, "session");
 }
 void walk(Walker& w, const odometry_t*) {
-    w.skip(8 + 8 + 4 + 1 + kTransform + 4 + kTransform + 36 * 8 + 12 + 8, "odometry");
+    w.skip(8 + 8 + 4 + 1 + kTransform + 4 + kTransform + 36 * kDouble + 12 + 8, "odometry");
 }
 void walk(Walker& w, const keyframe_t*) {
-    w.skip(8 + 8 + 4 + 4 + kTransform + 4 + kTransform + 36 * 8, "keyframe");
+    w.skip(8 + 8 + 4 + 4 + kTransform + 4 + kTransform + 36 * kDouble, "keyframe");
     const std::int32_t features = w.length("n_features");
     w.array(features, 8, "pixels");
     w.array(features, 12, "points");

@@ -240,7 +240,7 @@ std::string Endpoint::resolve() {
 std::string Endpoint::unreachable() {
     if (!is_network()) return {};
     if (!resolved_) {
-        const std::string why = resolve();
+        std::string why = resolve();
         if (!why.empty()) return why;
     }
     sockaddr_in address = {};

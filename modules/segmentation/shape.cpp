@@ -133,15 +133,16 @@ void ShapeTracer::find_blocks(const Image<std::uint16_t>& labels) {
         const int whole = height == block_px_ ? labels.width / block_px_ : 0;
         int x = 0;
         while (x < whole) {
+            const std::uint16_t* first = row + static_cast<std::ptrdiff_t>(x) * block_px_;
             if constexpr (kSide == 4) {
                 // Most of the image is the inside of regions: four blocks at once.
-                if (x + 4 <= whole && uniform_strip(row + x * kSide, labels.width)) {
-                    std::fill_n(out + x, 4, row[x * kSide]);
+                if (x + 4 <= whole && uniform_strip(first, labels.width)) {
+                    std::fill_n(out + x, 4, *first);
                     x += 4;
                     continue;
                 }
             }
-            const Block<kSide> block{row + x * block_px_, labels.width, block_px_, block_px_};
+            const Block<kSide> block{first, labels.width, block_px_, block_px_};
             out[x++] = block.uniform() ? *block.first : block.majority();
         }
         for (; x < blocks_.width - 2; ++x) {

@@ -244,12 +244,11 @@ Image<std::uint32_t> halved(const Image<std::uint32_t>& image) {
     Image<std::uint32_t> half(image.width / 2, image.height / 2);
     for (int v = 0; v < half.height; ++v) {
         const std::uint32_t *a = image.row(2 * v), *b = image.row(2 * v + 1);
-        for (int u = 0; u < half.width; ++u) {
+        for (int u = 0; u < half.width; ++u, a += 2, b += 2) {
             std::uint32_t result = 0;
             for (int shift = 0; shift < 24; shift += 8) {
                 const auto channel = [shift](std::uint32_t t) { return t >> shift & 255u; };
-                const std::uint32_t sum =
-                    channel(a[2 * u]) + channel(a[2 * u + 1]) + channel(b[2 * u]) + channel(b[2 * u + 1]);
+                const std::uint32_t sum = channel(a[0]) + channel(a[1]) + channel(b[0]) + channel(b[1]);
                 result |= (sum + 2) / 4 << shift;
             }
             half(u, v) = result;

@@ -118,7 +118,7 @@ DepthImage decimated(const DepthImage& depth, int step) {
     for (int v = 0; v < out.height; ++v) {
         const std::uint16_t* from = depth.row(v * step);
         std::uint16_t* to = out.row(v);
-        for (int u = 0; u < out.width; ++u) to[u] = from[u * step];
+        for (int u = 0; u < out.width; ++u) to[u] = from[static_cast<std::ptrdiff_t>(u) * step];
     }
     return out;
 }
