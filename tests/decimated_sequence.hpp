@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "core/camera_file.hpp"
 #include "core/files.hpp"
-#include "sensor/camera_file.hpp"
 #include "sensor/dataset.hpp"
 #include "sensor/png.hpp"
 
@@ -37,7 +37,7 @@ inline void write_decimated(const std::filesystem::path& from, const std::filesy
         return Json{{"width", camera.width}, {"height", camera.height}, {"fx", camera.fx},
                     {"fy", camera.fy},       {"cx", camera.cx},         {"cy", camera.cy}};
     };
-    const CameraInfo camera = sensor::camera_of_folder(from);
+    const CameraInfo camera = camera_of_folder(from);
     PinholeCamera coarse = camera.depth;
     coarse.width = static_cast<int>(coarse.width / factor);
     coarse.height = static_cast<int>(coarse.height / factor);

@@ -14,11 +14,12 @@ namespace planemap {
 
 /// What a sensor delivers for one moment.
 struct SensorFrame {
-    std::int64_t utime = 0;                ///< of the depth image, microseconds; the frame's time
-    std::int64_t color_utime = 0;          ///< of the colour image, microseconds; 0 without colour
-    DepthImage depth;                      ///< in the sensor's units, as sensed (not registered)
-    std::vector<std::uint8_t> color_jpeg;  ///< colour as the JPEG that was stored, undecoded; or empty
-    RgbImage color;                        ///< colour pixels; empty if color_jpeg is set or without colour
+    std::int64_t utime = 0;                  ///< of the depth image, microseconds; the frame's time
+    std::int64_t color_utime = 0;            ///< of the colour image, microseconds; 0 without colour
+    DepthImage depth;                        ///< in the sensor's units, as sensed (not registered)
+    std::vector<std::uint8_t> depth_zipped;  ///< the same as the zlib stream that was stored; or empty
+    std::vector<std::uint8_t> color_jpeg;    ///< colour as the JPEG that was stored, undecoded; or empty
+    RgbImage color;                          ///< colour pixels; empty if color_jpeg is set or without colour
 };
 
 /// What FrameSource::next() did.
@@ -49,6 +50,10 @@ class FrameSource {
     virtual ReadResult next(SensorFrame& frame) = 0;
     /// A line each of what the user should know about the source before its first frame.
     virtual std::vector<std::string> notes() const { return {}; }
+    /// A line each of what the user should know at the end: what of the source was damaged or not read.
+    virtual std::vector<std::string> complaints() const { return {}; }
+    /// How far it is read, 0 to 1, where size() is not known; nothing if that is not known either.
+    virtual std::optional<double> progress() const { return std::nullopt; }
 };
 
 }  // namespace planemap

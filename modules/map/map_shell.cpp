@@ -134,6 +134,8 @@ void MapShell::finish() {
     if (!output_.empty() && !is_ours_ && write_error_.empty())
         spdlog::info("{}: no planes came, so the earlier map stays", (output_ / kFile).string());
     if (!write_error_.empty()) throw std::runtime_error("the map could not be written: " + write_error_);
+    if (!output_.empty() && mapper_.map().planes.empty())
+        throw std::runtime_error("nothing was mapped: no planes came");
 }
 
 /// A folder that cannot be one shows now, not after the run; a disk that is full now may have room later.

@@ -561,17 +561,20 @@ bot_core::image_t image_message(int width, int height, int stride, std::int32_t 
 }  // namespace
 
 bot_core::image_t depth_image_message(const DepthImage& depth, std::int64_t utime, DepthEncoding encoding) {
-    const bool raw = encoding == DepthEncoding::kRaw;
-    auto message = image_message(depth.width, depth.height, raw ? 2 * depth.width : 0,
-                                 std::int32_t{raw ? std::int32_t{bot_core::image_t::PIXEL_FORMAT_LE_GRAY16}
-                                                  : std::int32_t{bot_core::image_t::PIXEL_FORMAT_INVALID}},
-                                 utime);
-    if (raw) {
-        message.data.resize(2 * depth.pixels.size());
-        if (!depth.pixels.empty()) std::memcpy(message.data.data(), depth.pixels.data(), message.data.size());
-    } else {
-        message.data = encode_zipped_depth(depth);
-    }
+    if (encoding == DepthEncoding::kZipped)
+        return zipped_depth_message(encode_zipped_depth(depth), depth.width, depth.height, utime);
+    auto message = image_message(depth.width, depth.height, 2 * depth.width,
+                                 bot_core::image_t::PIXEL_FORMAT_LE_GRAY16, utime);
+    message.data.resize(2 * depth.pixels.size());
+    if (!depth.pixels.empty()) std::memcpy(message.data.data(), depth.pixels.data(), message.data.size());
+    message.size = count32(message.data.size());
+    return message;
+}
+
+bot_core::image_t zipped_depth_message(std::span<const std::uint8_t> zipped, int width, int height,
+                                       std::int64_t utime) {
+    auto message = image_message(width, height, 0, bot_core::image_t::PIXEL_FORMAT_INVALID, utime);
+    message.data.assign(zipped.begin(), zipped.end());
     message.size = count32(message.data.size());
     return message;
 }

@@ -61,6 +61,9 @@ enum class DepthEncoding { kRaw, kZipped };
 
 /// One image each; metadata "seq" (4 bytes, little-endian) lets a receiver count the frames it missed.
 bot_core::image_t depth_image_message(const DepthImage& depth, std::int64_t utime, DepthEncoding encoding);
+/// Depth that is a zlib stream of its rows already.
+bot_core::image_t zipped_depth_message(std::span<const std::uint8_t> zipped, int width, int height,
+                                       std::int64_t utime);
 bot_core::image_t color_image_message(const RgbImage& color, std::int64_t utime, ColorEncoding encoding,
                                       int jpeg_quality);
 bot_core::image_t jpeg_image_message(std::span<const std::uint8_t> jpeg, int width, int height,

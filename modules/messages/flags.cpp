@@ -425,6 +425,11 @@ std::string Flags::program() const {
     return impl_->app.get_name();
 }
 
+void Flags::add_positionals(const std::string& name, std::vector<std::string>& field,
+                            const std::string& description) {
+    impl_->app.add_option(name, field, description)->required()->configurable(false);
+}
+
 int Flags::parse(int argc, const char* const* argv) {
     const CLI::App& app = impl_->app;
     const auto wrong = [&](const std::string& what) {

@@ -59,6 +59,9 @@ class Flags {
 
     /// The program's name.
     std::string program() const;
+    /// One or more arguments without names, at the end. They do not stand in a --config file.
+    void add_positionals(const std::string& name, std::vector<std::string>& field,
+                         const std::string& description);
 
     /// Returns -1 to go on, or the exit code: 0 after --help, --help-all, --version and --dump-config, 2 for
     /// wrong flags (said in one line on stderr; a flag that is not known with the nearest one that is).

@@ -13,7 +13,7 @@
 #include "messages/channels.hpp"
 #include "messages/convert.hpp"
 #include "messages/decode.hpp"
-#include "messages/image_codec.hpp"
+#include "messages/image_pixels.hpp"
 
 namespace planemap::messages {
 
@@ -36,22 +36,6 @@ class Timer {
     double& total_ms_;
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
-
-std::string size_text(int width, int height) {
-    return std::to_string(width) + "x" + std::to_string(height);
-}
-
-bool is_depth(std::int16_t type) {
-    return type == images_t::DEPTH_MM || type == images_t::DEPTH_MM_ZIPPED;
-}
-
-/// The first image that `wanted` takes by its type; nullptr if there is none.
-template <typename Wanted>
-const image_t* find_image(const images_t& images, const Wanted& wanted) {
-    for (std::size_t i = 0; i < images.images.size(); ++i)
-        if (wanted(images.image_types[i])) return &images.images[i];
-    return nullptr;
-}
 
 template <typename T>
 std::optional<T> metadata(const image_t& image, const char* key) {
@@ -80,8 +64,7 @@ bool fits(const image_t* image, const PinholeCamera& camera) {
 }
 
 bool fits(const images_t& images, const CameraInfo& camera) {
-    return fits(find_image(images, is_depth), camera.depth) &&
-           fits(find_image(images, [](std::int16_t type) { return type == images_t::LEFT; }), camera.color);
+    return fits(find_depth(images), camera.depth) && fits(find_color(images), camera.color);
 }
 
 images_t decode_images(std::span<const std::uint8_t> bytes) {
@@ -91,86 +74,19 @@ images_t decode_images(std::span<const std::uint8_t> bytes) {
     return images;
 }
 
-void require_size(const image_t& image, const PinholeCamera& camera, const char* which) {
-    if (image.width == camera.width && image.height == camera.height) return;
-    throw MessageError(std::string(which) + " image is " + size_text(image.width, image.height) +
-                       ", the camera info says " + size_text(camera.width, camera.height));
-}
-
-/// Throws unless `data` holds height rows of row_bytes at the image's stride.
-std::size_t checked_stride(const image_t& image, std::size_t row_bytes, const char* which) {
-    const auto stride = static_cast<std::size_t>(std::max(image.row_stride, 0));
-    const std::size_t used = stride == 0 ? row_bytes : stride;
-    const auto height = static_cast<std::size_t>(image.height);
-    if (used < row_bytes || image.data.size() < used * (height - 1) + row_bytes) {
-        throw MessageError(std::string(which) + " image: " + std::to_string(image.data.size()) +
-                           " bytes do not hold " + size_text(image.width, image.height) +
-                           " at a row stride of " + std::to_string(image.row_stride));
-    }
-    return used;
-}
-
-DepthImage raw_depth(const image_t& image) {
-    if (image.pixelformat != image_t::PIXEL_FORMAT_LE_GRAY16) {
-        throw MessageError("depth image: pixel format " + std::to_string(image.pixelformat) +
-                           " is not LE_GRAY16");
-    }
-    const std::size_t row_bytes = 2 * static_cast<std::size_t>(image.width);
-    const std::size_t stride = checked_stride(image, row_bytes, "depth");
-    DepthImage depth(image.width, image.height);
-    for (int v = 0; v < image.height; ++v) {
-        std::memcpy(depth.row(v), image.data.data() + static_cast<std::size_t>(v) * stride, row_bytes);
-    }
-    return depth;
-}
-
-GrayImage raw_luma(const image_t& image) {
-    const bool gray = image.pixelformat == image_t::PIXEL_FORMAT_GRAY;
-    const bool bgr = image.pixelformat == image_t::PIXEL_FORMAT_BGR;
-    const std::size_t channels = gray ? 1 : 3;
-    const std::size_t row_bytes = channels * static_cast<std::size_t>(image.width);
-    const std::size_t stride = checked_stride(image, row_bytes, "colour");
-    GrayImage out(image.width, image.height);
-    RgbImage row(image.width, 1);
-    for (int v = 0; v < image.height; ++v) {
-        const std::uint8_t* from = image.data.data() + static_cast<std::size_t>(v) * stride;
-        if (gray) {
-            std::memcpy(out.row(v), from, row_bytes);
-            continue;
-        }
-        std::memcpy(&row.pixels.data()->r, from, row_bytes);
-        if (bgr) {
-            for (Rgb& p : row.pixels) std::swap(p.r, p.b);
-        }
-        std::memcpy(out.row(v), luma(row).pixels.data(), static_cast<std::size_t>(image.width));
-    }
-    return out;
-}
-
 }  // namespace
 
 Frame::Frame(images_t images, std::shared_ptr<const CameraInfo> camera, std::shared_ptr<Histogram> decode_ms)
     : images_(std::move(images)), camera_(std::move(camera)), decode_ms_(std::move(decode_ms)) {
-    for (std::size_t i = 0; i < images_.images.size(); ++i) {
-        const std::int16_t type = images_.image_types[i];
-        const image_t& image = images_.images[i];
-        if (type == images_t::LEFT && color_ == nullptr) color_ = &image;
-        if (is_depth(type) && raw_depth_ == nullptr) {
-            raw_depth_ = &image;
-            zipped_ = type == images_t::DEPTH_MM_ZIPPED;
-        }
-    }
+    color_ = find_color(images_);
+    raw_depth_ = find_depth(images_);
+    zipped_ = depth_is_zipped(images_);
     if (raw_depth_ == nullptr)
         throw MessageError("frame: no depth image (DEPTH_MM or DEPTH_MM_ZIPPED) in it");
     require_size(*raw_depth_, camera_->depth, "depth");
     if (color_ == nullptr) return;
     require_size(*color_, camera_->color, "colour");
-    const std::int32_t format = color_->pixelformat;
-    if (format != image_t::PIXEL_FORMAT_GRAY && format != image_t::PIXEL_FORMAT_RGB &&
-        format != image_t::PIXEL_FORMAT_BGR && format != image_t::PIXEL_FORMAT_MJPEG) {
-        throw MessageError("colour image: pixel format " + std::to_string(format) +
-                           " is not GRAY, RGB, BGR or MJPEG");
-    }
+    require_color_format(*color_);
 }
 
 Frame::~Frame() {
@@ -202,8 +118,7 @@ void set_sender(image_t& image, std::uint64_t sender) {
 const DepthImage& Frame::depth() const {
     if (!depth_) {
         const Timer timer(spent_ms_);
-        depth_ = zipped_ ? decode_zipped_depth(raw_depth_->data, raw_depth_->width, raw_depth_->height)
-                         : raw_depth(*raw_depth_);
+        depth_ = depth_pixels(*raw_depth_, zipped_);
     }
     return *depth_;
 }
@@ -222,9 +137,7 @@ const GrayImage* Frame::gray() const {
     if (color_ == nullptr) return nullptr;
     if (!gray_) {
         const Timer timer(spent_ms_);
-        gray_ = color_->pixelformat == image_t::PIXEL_FORMAT_MJPEG
-                    ? decode_jpeg_luma(color_->data, color_->width, color_->height)
-                    : raw_luma(*color_);
+        gray_ = luma_pixels(*color_);
     }
     return &*gray_;
 }
@@ -320,8 +233,8 @@ void FrameDecoder::choose_camera(const images_t& images) {
 }
 
 Verdict FrameDecoder::judge(const images_t& images, std::uint32_t checksum) {
-    const image_t* depth = find_image(images, is_depth);
-    const image_t* color = find_image(images, [](std::int16_t type) { return type == images_t::LEFT; });
+    const image_t* depth = find_depth(images);
+    const image_t* color = find_color(images);
     SenderGuard::Message message;
     message.sender = metadata<std::uint64_t>(*depth, kSenderKey);
     message.seq = metadata<std::uint32_t>(*depth, kSeqKey);
@@ -329,10 +242,7 @@ Verdict FrameDecoder::judge(const images_t& images, std::uint32_t checksum) {
     message.checksum = checksum;
     // Of frames that lack colour the form is not known: a camera may lose its colour for a while.
     if (color != nullptr) {
-        message.kind =
-            static_cast<std::uint32_t>(color->pixelformat) ^
-            (depth == find_image(images, [](std::int16_t type) { return type == images_t::DEPTH_MM; }) ? 1U
-                                                                                                       : 0U);
+        message.kind = static_cast<std::uint32_t>(color->pixelformat) ^ (depth_is_zipped(images) ? 0U : 1U);
     }
     const int switches = guard_.switches();
     const Verdict verdict = guard_.judge(message);
@@ -355,7 +265,7 @@ std::shared_ptr<const Frame> FrameDecoder::decode(const RawMessage& message) con
 /// The frame, if it is the next one of the sender that is followed; else why not.
 std::pair<std::shared_ptr<const Frame>, Verdict> FrameDecoder::take(const RawMessage& message) {
     images_t images = decode_images(message.bytes);
-    const image_t* depth = find_image(images, is_depth);
+    const image_t* depth = find_depth(images);
     const std::uint32_t checksum = checksum_of(message.bytes);
     const bool is_other = other_camera_ && !fits(images, *camera_) && fits(images, *other_camera_);
     if (depth != nullptr && !is_other && !fits(images, *camera_) &&
@@ -392,7 +302,9 @@ void FrameDecoder::on_frame(const RawMessage& message) {
             status.dropped();
             lose(subscriber, "frames before their camera was described");
             status.set_text(camera_refused_.empty()
-                                ? std::string("no ") + channels::kCameraInfo + " yet"
+                                ? std::string("no ") + channels::kCameraInfo +
+                                      " says what the camera is: give --camera camera.json, or let "
+                                      "planemap-sensor send the frames"
                                 : std::string(channels::kCameraInfo) + " cannot be used: " + camera_refused_);
         }
         return;

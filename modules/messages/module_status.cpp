@@ -101,6 +101,11 @@ std::int8_t ModuleStatus::state(std::int64_t now_us) const {
     return unanswered ? module_status_t::FAILING : module_status_t::RUNNING;
 }
 
+std::string ModuleStatus::failure() const {
+    if (received_ == 0 || published_ > 0 || dropped_ + decode_errors_ < received_) return {};
+    return "none of the " + std::to_string(received_) + " inputs could be used: " + full_text();
+}
+
 ModuleStatus::Work::~Work() {
     const double ms =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();

@@ -77,6 +77,10 @@ class ModuleStatus {
     /// The same in CPU time of the thread that worked: what a busy machine does not lengthen.
     const Histogram& work_cpu_ms() const { return work_cpu_ms_; }
 
+    /// Why the module gave nothing, though it was given something: none of its inputs could be used. Empty
+    /// if it is not so.
+    std::string failure() const;
+
     /// Publishes when a second has passed since the last time; `stopped` publishes at once, as the last
     /// message. Returns true if it did.
     bool publish_if_due(Bus& bus, std::int64_t now_us, bool stopped = false);

@@ -155,6 +155,8 @@ int Process::run(int argc, char** argv, const std::function<std::unique_ptr<Shel
             spdlog::info("on {}{}", bus.url(),
                          channel_prefix_.empty() ? "" : ", channels " + channel_prefix_ + "*");
         serve(*shell, bus);
+        if (const std::string failure = shell->status().failure(); !failure.empty())
+            throw std::runtime_error(failure);
         return 0;
     });
 }

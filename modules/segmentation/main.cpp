@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "messages/camera_flag.hpp"
 #include "segmentation/segmentation_shell.hpp"
 
 int main(int argc, char** argv) {
     planemap::messages::Process process("segmentation", "Depth images to planar regions.");
     planemap::segmentation::SegmentationOptions options;
+    planemap::messages::CameraFlag camera;
+    camera.add_to(process.flags(), planemap::messages::kCameraOffTheBus);
     process.flags().add(options_of(options));
     return process.run(argc, argv, [&](planemap::messages::Bus& bus) {
         return std::make_unique<planemap::segmentation::SegmentationShell>(
-            bus, std::make_shared<planemap::messages::FrameDecoder>(bus), options);
+            bus, std::make_shared<planemap::messages::FrameDecoder>(bus, camera.read()), options);
     });
 }

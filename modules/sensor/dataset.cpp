@@ -6,9 +6,9 @@
 #include <set>
 #include <stdexcept>
 
+#include "core/camera_file.hpp"
 #include "core/files.hpp"
 #include "core/text_file.hpp"
-#include "sensor/camera_file.hpp"
 #include "sensor/jpeg.hpp"
 #include "sensor/png.hpp"
 
@@ -131,7 +131,7 @@ void blame_end(const fs::path& file, ReadResult& result) {
 Dataset::Dataset(const fs::path& folder, const SourceOptions& options)
     : folder_(folder), frames_(list_frames(folder, options, notes_)) {
     if (frames_.empty()) throw std::runtime_error(folder.string() + ": its lists name no depth images");
-    camera_ = camera_of_folder(folder, &notes_);
+    camera_ = options.camera ? *options.camera : camera_of_folder(folder, &notes_);
     const auto [from, to] = frames_within(options.frames, frames_.size());
     frames_ = {frames_.begin() + static_cast<std::ptrdiff_t>(from),
                frames_.begin() + static_cast<std::ptrdiff_t>(to)};

@@ -15,6 +15,7 @@ namespace planemap::sensor {
 
 namespace {
 constexpr std::int64_t kCameraPeriodUs = 1000000;
+constexpr std::int64_t kLongestPauseUs = 60000000;  ///< that is waited for
 }  // namespace
 
 void SensorShellOptions::validate() const {
@@ -96,14 +97,15 @@ int SensorShell::poll() {
         const Read got = read();
         if (got != Read::kFrame) return got == Read::kEnd ? -1 : 0;
         pending_ = true;
-        if (start_wall_us_ == 0) {
+        if (start_wall_us_ == 0 || jumps()) {
             start_wall_us_ = messages::now_us();
             start_utime_ = frame_.utime;
+            start_frame_ = frames_;
         }
     }
     std::int64_t due_us = start_wall_us_;
     if (options_.rate_hz > 0) {
-        due_us += std::llround(static_cast<double>(frames_) / options_.rate_hz * 1e6);
+        due_us += std::llround(static_cast<double>(frames_ - start_frame_) / options_.rate_hz * 1e6);
     } else if (options_.speed > 0) {
         due_us += std::llround(static_cast<double>(frame_.utime - start_utime_) / options_.speed);
     }
@@ -114,8 +116,15 @@ int SensorShell::poll() {
     return 0;
 }
 
+/// A recording whose clock was set, or that was stopped for a while, goes on at once.
+bool SensorShell::jumps() const {
+    return frames_ > 0 && (frame_.utime < last_utime_ || frame_.utime - last_utime_ > kLongestPauseUs);
+}
+
 void SensorShell::finish() {
-    if (!ended_ || frames_ > 0) return;
+    if (!ended_) return;
+    for (const std::string& complaint : source_->complaints()) spdlog::warn("{}", complaint);
+    if (frames_ > 0) return;
     status_.publish_if_due(bus_, messages::now_us(), true);
     throw std::runtime_error("none of the " + std::to_string(broken_) +
                              " frames could be read; the first: " + first_fault_);
@@ -154,8 +163,12 @@ void SensorShell::publish(const SensorFrame& frame) {
     const bool zipped = options_.depth == "zipped";
     images.image_types.push_back(zipped ? std::int16_t{bot_core::images_t::DEPTH_MM_ZIPPED}
                                         : std::int16_t{bot_core::images_t::DEPTH_MM});
-    images.images.push_back(messages::depth_image_message(
-        frame.depth, frame.utime, zipped ? messages::DepthEncoding::kZipped : messages::DepthEncoding::kRaw));
+    images.images.push_back(zipped && !frame.depth_zipped.empty()
+                                ? messages::zipped_depth_message(frame.depth_zipped, frame.depth.width,
+                                                                 frame.depth.height, frame.utime)
+                                : messages::depth_image_message(frame.depth, frame.utime,
+                                                                zipped ? messages::DepthEncoding::kZipped
+                                                                       : messages::DepthEncoding::kRaw));
     messages::set_seq(images.images.back(), static_cast<std::uint32_t>(frames_));
     if (sender_) messages::set_sender(images.images.back(), *sender_);
     images.n_images = static_cast<std::int32_t>(images.images.size());

@@ -58,6 +58,7 @@ class SensorShell : public messages::Shell {
     bool camera_is_due(std::int64_t utime) const;
     Read read();
     bool next(ReadResult& result);
+    bool jumps() const;
     void count(const ReadResult& result);
     void complain(const std::string& what, const ReadResult& result);
 
@@ -71,7 +72,7 @@ class SensorShell : public messages::Shell {
     SensorFrame frame_;
     bool pending_ = false, ended_ = false;
     std::int64_t frames_ = 0, broken_ = 0, colorless_ = 0, ends_missing_ = 0;
-    std::int64_t start_wall_us_ = 0, start_utime_ = 0, last_utime_ = 0;
+    std::int64_t start_wall_us_ = 0, start_utime_ = 0, start_frame_ = 0, last_utime_ = 0;
     std::int64_t last_camera_utime_ = 0, last_camera_wall_us_ = 0;
     std::int64_t disconnected_us_ = 0;  ///< since when the bus has no connection; 0: it has
     std::int32_t camera_seq_ = 0;

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
+#include "core/camera.hpp"
 #include "core/frame_range.hpp"
 #include "core/frame_source.hpp"
 
@@ -11,16 +13,29 @@ namespace planemap::sensor {
 
 /// How an input is read.
 struct SourceOptions {
-    double max_color_gap_s = 0.02;  ///< depth without a colour image this near in time has no colour
-    FrameRange frames{};            ///< what next() gives; as if the source had no others
+    double max_color_gap_s = 0.02;       ///< depth without a colour image this near in time has no colour
+    FrameRange frames{};                 ///< what next() gives; as if the source had no others
+    std::optional<CameraInfo> camera{};  ///< instead of what the input says of its camera
+    std::string channel{};               ///< of a log: whose frames; empty: the first that has depth
 
     /// Throws std::invalid_argument that names every bad field.
     void validate() const;
 };
 
-/// Opens `input`: a TUM-layout folder (see Dataset), or "sim:WORLD?key=value&..." (see SimulatedSource).
+/// What an input is.
+enum class InputKind {
+    kSimulator,  ///< sim:WORLD?key=value&...; see SimulatedSource
+    kLog,        ///< an LCM log, or any other file: LogSource says what is wrong with it
+    kFolder,     ///< a folder in the TUM layout, or nothing that is there: Dataset says so
+};
+
+/// By the name, and what stands in the file system.
+InputKind kind_of_input(const std::string& input);
+
+/// Opens `input`, whatever kind it is of.
 /// Throws std::runtime_error naming file and reason if there is nothing to read, and what to do about it;
-/// std::invalid_argument for a bad camera.json or simulator name.
+/// std::invalid_argument for a bad camera.json or simulator name, and for an option that is for inputs of
+/// another kind.
 std::unique_ptr<FrameSource> open_source(const std::string& input, const SourceOptions& options = {});
 
 }  // namespace planemap::sensor

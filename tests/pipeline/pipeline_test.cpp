@@ -33,7 +33,7 @@ Outcome run(const std::filesystem::path& recording) {
     PipelineOptions options;
     options.with_octomap = false;
     Pipeline pipeline(bus, options);
-    const std::unique_ptr<Input> input = open_input(recording.string(), bus, std::nullopt);
+    const std::unique_ptr<Input> input = open_input(recording.string(), bus);
     while (input->feed()) pipeline.settle();
     pipeline.finish();
     Outcome outcome;
@@ -129,7 +129,7 @@ std::string why_none_tracked(const std::filesystem::path& folder, const CameraIn
     PipelineOptions options;
     options.with_octomap = false;
     Pipeline pipeline(bus, options);
-    const std::unique_ptr<Input> input = open_input(folder.string(), bus, std::nullopt);
+    const std::unique_ptr<Input> input = open_input(folder.string(), bus);
     while (input->feed()) pipeline.settle();
     pipeline.finish();
     EXPECT_EQ(pipeline.estimates().size(), 3u);

@@ -18,6 +18,7 @@
 #include <planemap/trajectory_t.hpp>
 #include <set>
 
+#include "core/camera_file.hpp"
 #include "core/trajectory_file.hpp"
 #include "exports/exports.hpp"
 #include "map/map_file.hpp"
@@ -27,7 +28,6 @@
 #include "messages/convert.hpp"
 #include "messages/decode.hpp"
 #include "messages/log.hpp"
-#include "sensor/camera_file.hpp"
 #include "tools/programs.hpp"
 
 namespace planemap {
@@ -145,7 +145,7 @@ TEST_F(Stored, ATrajectoryIsReadAndCompared) {
 
 TEST_F(Stored, ACameraFileIsReadWithAllItsKeys) {
     std::vector<std::string> notes;
-    const CameraInfo camera = sensor::read_camera_file(stored("camera.json"), &notes);
+    const CameraInfo camera = read_camera_file(stored("camera.json"), &notes);
     EXPECT_EQ(notes, std::vector<std::string>{});
     EXPECT_EQ(camera.depth.width, 192);
     EXPECT_EQ(camera.color.fx, 157.5);

@@ -50,7 +50,7 @@ class LogInputTest : public testing::Test {
     }
     std::string error() {
         try {
-            open_input(file_, bus_, std::nullopt);
+            open_input(file_, bus_);
             return {};
         } catch (const std::runtime_error& error) {
             return error.what();
@@ -75,7 +75,7 @@ TEST_F(LogInputTest, TheChannelWithDepthIsReadAndTheOthersAreNamed) {
         add(log, "WEBCAM", frame(false));
     }
     log.close();
-    const auto input = open_input(file_, bus_, std::nullopt);
+    const auto input = open_input(file_, bus_);
     EXPECT_EQ(feed(*input), 4);
     ASSERT_EQ(input->complaints().size(), 1u);
     EXPECT_EQ(input->complaints()[0],
@@ -96,7 +96,7 @@ TEST_F(LogInputTest, ABadCameraDescriptionIsNamedWithItsReason) {
         << said;
     EXPECT_NE(said.find("fx"), std::string::npos) << said;
     EXPECT_NE(said.find("-3"), std::string::npos) << said;
-    EXPECT_NO_THROW(open_input(file_, bus_, camera_)) << "one that is given does";
+    EXPECT_NO_THROW(open_input(file_, bus_, {.camera = camera_})) << "one that is given does";
 }
 
 TEST_F(LogInputTest, AFileThatIsNoLogSaysSoAndOneOfARecordingNamesItsFolder) {
@@ -127,7 +127,7 @@ TEST_F(LogInputTest, ALogThatCannotBeReadOnEndsTheInputWithItsReason) {
     add(log, messages::channels::kCameraInfo, messages::to_message(camera_, 0, 0));
     for (int i = 0; i < 200; ++i) add(log, messages::channels::kFrame, frame(true));
     log.close();
-    const auto input = open_input(file_, bus_, std::nullopt);
+    const auto input = open_input(file_, bus_);
     ASSERT_TRUE(input->feed());
     EXPECT_EQ(input->failure(), "");
     std::filesystem::resize_file(file_, std::filesystem::file_size(file_) / 2);

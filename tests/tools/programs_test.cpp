@@ -17,10 +17,10 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-constexpr const char* kPrograms[] = {"planemap-run",    "planemap-evaluate",     "planemap-export",
-                                     "planemap-report", "planemap-simulate",     "planemap-segment",
-                                     "planemap-sensor", "planemap-segmentation", "planemap-odometry",
-                                     "planemap-graph",  "planemap-map",          "planemap-octomap"};
+constexpr const char* kPrograms[] = {
+    "planemap-run",     "planemap-evaluate", "planemap-export",  "planemap-report",       "planemap-simulate",
+    "planemap-segment", "planemap-sensor",   "planemap-log",     "planemap-segmentation", "planemap-odometry",
+    "planemap-graph",   "planemap-map",      "planemap-octomap", "planemap-convert"};
 
 struct ProgramsTest : test::Programs {
     Json evaluate(const std::string& truth, const std::string& estimate) {

@@ -95,7 +95,7 @@ Growth measure_growth(const std::string& simulator_name, std::int64_t frames,
     options.with_octomap = false;
     messages::Bus bus("memq://");
     pipeline::Pipeline pipeline(bus, options);
-    const std::unique_ptr<Input> input = open_input(simulator_name, bus, options.camera);
+    const std::unique_ptr<Input> input = open_input(simulator_name, bus, {.camera = options.camera});
     feed_all(*input, frames, [&](std::int64_t so_far) {
         pipeline.settle();
         observer.see(so_far, pipeline);

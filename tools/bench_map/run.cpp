@@ -50,7 +50,7 @@ SequenceRun run_sequence(const std::string& input_name, const RunOptions& option
         run.keyframes.back().features = {};
     });
     const DepthWatch depth(pipeline.decoder());
-    const std::unique_ptr<Input> input = open_input(input_name, bus, options.pipeline.camera);
+    const std::unique_ptr<Input> input = open_input(input_name, bus, {.camera = options.pipeline.camera});
     feed_all(*input, options.frames, [&](std::int64_t frames) {
         pipeline.settle();
         on_frame(frames);

@@ -71,7 +71,7 @@ std::vector<SurfaceCheck> check_surfaces(const std::string& input_name, std::int
                                          const Trajectory& truth) {
     SurfaceChecker checker(map);
     messages::Bus bus("memq://");
-    messages::FrameDecoder decoder(bus, camera);
+    messages::FrameDecoder decoder(bus, {.camera = camera});
     std::int64_t count = 0;
     bus.subscribe(messages::channels::kFrame, [&](const messages::RawMessage& message) {
         if (count++ % kEvery != 0) return;
@@ -80,7 +80,7 @@ std::vector<SurfaceCheck> check_surfaces(const std::string& input_name, std::int
         const std::optional<Pose> pose = pipeline::given_pose(truth, frame->utime());
         if (pose) checker.add(frame->depth(), frame->camera(), *pose);
     });
-    const std::unique_ptr<Input> input = open_input(input_name, bus, camera);
+    const std::unique_ptr<Input> input = open_input(input_name, bus, {.camera = camera});
     feed_all(*input, frames, [&](std::int64_t) { bus.drain(); });
     return checker.checks();
 }

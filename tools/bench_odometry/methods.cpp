@@ -38,7 +38,7 @@ MethodRun run_planemap(const std::string& input_name, std::int64_t max_frames,
                        const std::function<void(std::int64_t)>& on_frame) {
     messages::Bus bus("memq://");
     pipeline::Pipeline pipeline(bus, options);
-    const std::unique_ptr<Input> input = open_input(input_name, bus, options.camera);
+    const std::unique_ptr<Input> input = open_input(input_name, bus, {.camera = options.camera});
     feed_all(*input, max_frames, [&](std::int64_t frames) {
         pipeline.settle();
         on_frame(frames);

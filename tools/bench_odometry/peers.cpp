@@ -91,7 +91,7 @@ MethodRun run_peer(const std::string& method, const std::string& input_name, std
         const std::optional<Pose> pose = odometry.track(*frame);
         if (pose) run.trajectory.push_back({frame->color_utime(), *pose});
     });
-    const std::unique_ptr<Input> input = open_input(input_name, bus, std::nullopt);
+    const std::unique_ptr<Input> input = open_input(input_name, bus);
     feed_all(*input, max_frames, [&](std::int64_t frames) {
         bus.drain();
         on_frame(frames);

@@ -8,10 +8,10 @@
 #include <tuple>
 
 #include "core/angle.hpp"
+#include "core/camera_file.hpp"
 #include "core/geometry/moments.hpp"
 #include "core/trajectory.hpp"
 #include "segment/read_image.hpp"
-#include "sensor/camera_file.hpp"
 #include "sensor/dataset.hpp"
 #include "simulator/simulated_source.hpp"
 
@@ -60,7 +60,7 @@ std::vector<Plane> fit_surfaces(const Image<std::uint16_t>& surfaces, const Dept
 
 /// Images with a label image each: one colour a plane, black for none. True planes are fitted to the depth.
 Sequence open_labelled(const std::filesystem::path& folder, std::size_t frames) {
-    const CameraInfo camera = sensor::read_camera_file(folder / "camera.json");
+    const CameraInfo camera = read_camera_file(folder / "camera.json");
     std::size_t count = 0;
     while (std::filesystem::exists(folder / (std::to_string(count) + ".depth.png"))) ++count;
     const auto load = [=](std::size_t index) {

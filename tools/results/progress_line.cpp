@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 
 namespace planemap {
@@ -30,6 +31,21 @@ void ProgressLine::clear() {
 void ProgressLine::end() {
     if (drawn_) std::fputs("\n", stderr);
     drawn_ = false;
+}
+
+std::string time_left(std::optional<double> share, double elapsed_s) {
+    if (!share || !(*share > 0)) return {};
+    const double left_s = elapsed_s * std::max(1 / *share - 1, 0.0);
+    char text[48];
+    if (left_s < 60) {
+        std::snprintf(text, sizeof(text), ", %.0f s left", left_s);
+    } else if (left_s < 3600) {
+        std::snprintf(text, sizeof(text), ", %d min %02d s left", static_cast<int>(left_s) / 60,
+                      static_cast<int>(left_s) % 60);
+    } else {
+        std::snprintf(text, sizeof(text), ", %.1f h left", left_s / 3600);
+    }
+    return text;
 }
 
 }  // namespace planemap

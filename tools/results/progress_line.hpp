@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <optional>
 #include <string>
 
 namespace planemap {
@@ -31,5 +32,9 @@ class ProgressLine {
     std::chrono::duration<double> every_;
     std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
+
+/// ", 1 min 20 s left", going by the pace so far; empty where that is not known. `share` of the work is done,
+/// 0 to 1.
+std::string time_left(std::optional<double> share, double elapsed_s);
 
 }  // namespace planemap

@@ -3,18 +3,12 @@
 
 #include <spdlog/spdlog.h>
 
-#include <algorithm>
-#include <bot_core/images_t.hpp>
 #include <chrono>
 #include <filesystem>
-#include <planemap/camera_info_t.hpp>
 #include <stdexcept>
 
 #include "messages/channels.hpp"
-#include "messages/convert.hpp"
-#include "messages/decode.hpp"
-#include "messages/log.hpp"
-#include "run/log_contents.hpp"
+#include "sensor/log_frames.hpp"
 #include "sensor/sensor_shell.hpp"
 #include "simulator/simulated_source.hpp"
 
@@ -26,19 +20,19 @@ namespace {
 /// them twice.
 class SensorInput : public Input {
   public:
-    SensorInput(const std::string& name, messages::Bus& bus, const FrameRange& frames)
-        : folder_(name), shell_(bus, sensor::open_source(name, {.frames = frames}), in_process()) {
+    SensorInput(const std::string& name, messages::Bus& bus, const sensor::SourceOptions& options)
+        : folder_(name), shell_(bus, sensor::open_source(name, options), in_process()) {
         read_truth();
     }
 
     std::int64_t frames() const override { return shell_.frames() + shell_.broken(); }
     std::optional<double> progress() const override {
         const auto size = shell_.source().size();
-        if (!size || *size == 0) return std::nullopt;
+        if (!size || *size == 0) return shell_.source().progress();
         return static_cast<double>(frames()) / static_cast<double>(*size);
     }
     std::vector<std::string> complaints() const override {
-        std::vector<std::string> lines;
+        std::vector<std::string> lines = shell_.source().complaints();
         if (shell_.broken() > 0)
             lines.push_back(std::to_string(shell_.broken()) + " frames could not be read");
         if (shell_.colorless() > 0)
@@ -90,99 +84,42 @@ class SensorInput : public Input {
     std::optional<Trajectory> truth_;  ///< of a folder
 };
 
-/// Why a message of the type cannot be used; empty if it can.
-template <typename T>
-std::string why_unusable(const messages::LogEvent& event) {
-    try {
-        messages::from_message(messages::decode<T>(event.bytes));
-        return {};
-    } catch (const messages::MessageError& error) {
-        return error.what();
-    }
-}
-
-bool has_depth(const messages::LogEvent& event) {
-    try {
-        const auto types = messages::decode<bot_core::images_t>(event.bytes).image_types;
-        return std::any_of(types.begin(), types.end(), [](std::int16_t type) {
-            return type == bot_core::images_t::DEPTH_MM || type == bot_core::images_t::DEPTH_MM_ZIPPED;
-        });
-    } catch (const std::exception&) {
-        return false;
-    }
-}
-
-/// An LCM log: images_t from the first channel on which they have depth, the camera from the first
-/// camera_info_t that can be used.
+/// An LCM log: its frames go on the bus as they came, with the stamps, numbers and senders that they had.
 class LogInput : public Input {
   public:
-    LogInput(const std::string& name, messages::Bus& bus, bool has_camera, const FrameRange& range)
-        : name_(name), bus_(bus), log_(name), range_(range), follow_camera_(!has_camera) {
-        messages::LogReader ahead(name);
-        LogContents contents;
-        bool described = false;
-        std::int64_t unusable = 0;
-        std::string reason;
-        for (messages::LogEvent event;
-             !((described || has_camera) && !channel_.empty()) && ahead.next(event);) {
-            contents.add(event);
-            if (channel_.empty() && messages::is_a<bot_core::images_t>(event.bytes) && has_depth(event))
-                channel_ = event.channel;
-            if (described || !messages::is_a<camera_info_t>(event.bytes)) continue;
-            const std::string why = why_unusable<camera_info_t>(event);
-            if (why.empty()) {
-                described = true;
-                if (!has_camera) bus_.publish_bytes(messages::channels::kCameraInfo, event.bytes);
-            } else if (++unusable == 1) {
-                reason = why;
-            }
-        }
-        if (contents.count() == 0) throw std::runtime_error(name + ": is no LCM log" + hint(name));
-        if (channel_.empty()) {
-            throw std::runtime_error(name +
-                                     ": no camera frames with depth (bot_core.images_t with DEPTH_MM or "
-                                     "DEPTH_MM_ZIPPED) in this log; in it are " +
-                                     contents.text());
-        }
-        if (!described && !has_camera) {
-            throw std::runtime_error(name +
-                                     (unusable > 0
-                                          ? ": none of the " + std::to_string(unusable) +
-                                                " camera_info_t in this log can be used (" + reason + ")"
-                                          : ": no camera_info_t in this log says what its camera is") +
-                                     "; give --camera camera.json");
-        }
-        if (range_.from > 0) check_range();
+    LogInput(const std::string& name, messages::Bus& bus, const sensor::SourceOptions& options)
+        : bus_(bus),
+          log_(name, {.channel = options.channel,
+                      .camera_is_given = options.camera.has_value(),
+                      .frames = options.frames}) {
+        if (log_.camera()) bus_.publish_bytes(messages::channels::kCameraInfo, log_.camera_bytes());
     }
 
     std::int64_t frames() const override { return frames_; }
-    std::optional<double> progress() const override {
-        return static_cast<double>(log_.bytes_read()) /
-               static_cast<double>(std::max<std::uint64_t>(log_.bytes_total(), 1));
-    }
+    std::optional<double> progress() const override { return log_.progress(); }
     std::vector<std::string> complaints() const override {
         std::vector<std::string> lines = log_.complaints();
-        if (unread_.count() > 0)
-            lines.push_back("frames of other channels than " + channel_ + " are not read: " + unread_.text());
+        if (broken_ > 0)
+            lines.push_back(std::to_string(broken_) + " frames could not be read; the first: " + fault_);
         return lines;
     }
     std::string failure() const override { return failure_; }
 
   private:
     bool publish_next() override {
+        using Found = sensor::LogFrames::Found;
         try {
-            for (messages::LogEvent event; log_.next(event);) {
-                if (event.channel == channel_) {
-                    const std::size_t number = next_++;
-                    if (number < range_.from) continue;
-                    if (range_.to && number >= *range_.to) return false;
-                    bus_.publish_bytes(messages::channels::kFrame, event.bytes);
-                    ++frames_;
-                    return true;
-                }
-                if (follow_camera_ && event.channel == messages::channels::kCameraInfo)
+            for (messages::LogEvent event;;) {
+                const Found found = log_.next(event);
+                if (found == Found::kEnd) return false;
+                if (found == Found::kCamera) {
                     bus_.publish_bytes(messages::channels::kCameraInfo, event.bytes);
-                if (messages::is_a<bot_core::images_t>(event.bytes)) unread_.add(event);
+                    continue;
+                }
+                ++frames_;
+                if (found == Found::kFrame) bus_.publish_bytes(messages::channels::kFrame, event.bytes);
+                if (found == Found::kBroken && ++broken_ == 1) fault_ = log_.fault();
+                return true;
             }
         } catch (const std::runtime_error& error) {  // a disk that fails: what there is so far is kept
             failure_ = error.what();
@@ -190,33 +127,10 @@ class LogInput : public Input {
         return false;
     }
 
-    /// A file of a recording in a folder is not the recording.
-    static std::string hint(const std::filesystem::path& file) {
-        const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
-        std::error_code ignored;
-        return std::filesystem::exists(folder / "depth.txt", ignored)
-                   ? "; give its folder, " + folder.string()
-                   : "";
-    }
-
-    /// An error now rather than at the end of the log.
-    void check_range() const {
-        messages::LogReader ahead(name_);
-        std::size_t count = 0;
-        for (messages::LogEvent event; count <= range_.from && ahead.next(event);)
-            count += event.channel == channel_;
-        frames_within(range_, count);
-    }
-
-    std::string name_;
     messages::Bus& bus_;
-    messages::LogReader log_;
-    FrameRange range_;
-    std::size_t next_ = 0;  ///< number of the next frame in the log
-    LogContents unread_;    ///< images_t of other channels
-    std::string channel_, failure_;
-    std::int64_t frames_ = 0;
-    bool follow_camera_;
+    sensor::LogFrames log_;
+    std::string failure_, fault_;
+    std::int64_t frames_ = 0, broken_ = 0;
 };
 
 }  // namespace
@@ -238,13 +152,10 @@ void feed_all(Input& input, std::int64_t max_frames,
 }
 
 std::unique_ptr<Input> open_input(const std::string& name, messages::Bus& bus,
-                                  const std::optional<CameraInfo>& camera, const FrameRange& frames) {
-    std::error_code ignored;
-    if (std::filesystem::is_regular_file(name, ignored))
-        return std::make_unique<LogInput>(name, bus, camera.has_value(), frames);
-    if (std::filesystem::exists(name, ignored) && !std::filesystem::is_directory(name, ignored))
-        throw std::runtime_error(name + ": is neither a folder nor a regular file");
-    return std::make_unique<SensorInput>(name, bus, frames);
+                                  const sensor::SourceOptions& options) {
+    if (sensor::kind_of_input(name) == sensor::InputKind::kLog)
+        return std::make_unique<LogInput>(name, bus, options);
+    return std::make_unique<SensorInput>(name, bus, options);
 }
 
 }  // namespace planemap

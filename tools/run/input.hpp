@@ -9,12 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "core/camera.hpp"
-#include "core/frame_range.hpp"
 #include "core/histogram.hpp"
 #include "core/trajectory.hpp"
 #include "messages/bus.hpp"
 #include "results/result_folder.hpp"
+#include "sensor/source.hpp"
 
 namespace planemap {
 
@@ -50,11 +49,10 @@ class Input {
     bool is_at_end_ = false;
 };
 
-/// Opens a TUM-layout folder, an LCM log or a simulator name (sim:...). `camera` is for logs that do not
-/// describe theirs; of the frames only those of `frames` are read. Throws std::runtime_error or
-/// std::invalid_argument with one line that names input and reason.
+/// Opens anything that sensor::open_source() opens. Throws std::runtime_error or std::invalid_argument with
+/// one line that names input and reason.
 std::unique_ptr<Input> open_input(const std::string& name, messages::Bus& bus,
-                                  const std::optional<CameraInfo>& camera, const FrameRange& frames = {});
+                                  const sensor::SourceOptions& options = {});
 
 /// Feeds an input to its end, or until it gave `max_frames` (0: all). Calls `after_each` with the frames so
 /// far.

@@ -6,6 +6,7 @@
 
 #include "core/standard_output.hpp"
 #include "core/trajectory_file.hpp"
+#include "messages/camera_flag.hpp"
 #include "pipeline/pipeline.hpp"
 #include "run/depth_watch.hpp"
 #include "run/input.hpp"
@@ -14,14 +15,15 @@
 #include "run/progress.hpp"
 #include "run/report.hpp"
 #include "run/run_info.hpp"
-#include "sensor/camera_file.hpp"
 
 namespace planemap {
 namespace {
 
 struct RunOptions {
     std::string input, frames;
-    std::filesystem::path output, camera, poses;
+    std::filesystem::path output, poses;
+    std::string channel;
+    messages::CameraFlag camera;
     bool no_octomap = false, quiet = false, verbose = false;
     std::optional<std::uint64_t> seed;
     pipeline::PipelineOptions pipeline;
@@ -35,7 +37,10 @@ void add_run_flags(messages::Flags& flags, RunOptions& options) {
     flags.required();
     flags.add("frames", options.frames,
               "A:B: only frames A to B-1 of the input, counted from 0; either may be left out");
-    flags.add("camera", options.camera, "camera.json for a log that does not describe its camera");
+    options.camera.add_to(
+        flags, "camera.json for a log that does not describe its camera, or instead of what INPUT says");
+    flags.add("channel", options.channel,
+              "Of a log: the channel of the frames; default: the first that has depth");
     flags.add("poses", options.poses,
               "Trajectory (TUM or EuRoC format, of the colour camera) that keyframes take their poses from, "
               "instead of the "
@@ -142,11 +147,7 @@ Trajectory read_given_poses(const std::filesystem::path& file) {
 int run(RunOptions options, const nlohmann::ordered_json& about) {
     if (options.seed) options.pipeline.segmentation.seed = options.pipeline.odometry.seed = *options.seed;
     options.pipeline.with_octomap = !options.no_octomap;
-    if (!options.camera.empty()) {
-        std::vector<std::string> notes;
-        options.pipeline.camera = sensor::read_camera_file(options.camera, &notes);
-        warn(notes);
-    }
+    options.pipeline.camera = options.camera.read();
     if (!options.poses.empty()) options.pipeline.poses = read_given_poses(options.poses);
     const FrameRange frames = options.frames.empty() ? FrameRange{} : parse_frame_range(options.frames);
     messages::catch_stop_signals();
@@ -154,7 +155,9 @@ int run(RunOptions options, const nlohmann::ordered_json& about) {
     messages::Bus bus("memq://");
     pipeline::Pipeline pipeline(bus, options.pipeline);
     const DepthWatch depth(pipeline.decoder());
-    const std::unique_ptr<Input> input = open_input(options.input, bus, options.pipeline.camera, frames);
+    const std::unique_ptr<Input> input =
+        open_input(options.input, bus,
+                   {.frames = frames, .camera = options.pipeline.camera, .channel = options.channel});
     ResultFolder folder(options.output, result_names(options.output, *input));
     warn(folder.take_notes());
 

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "run/progress.hpp"
 
-#include <algorithm>
 #include <cstdio>
-#include <optional>
 #include <string>
 
 #include "messages/process.hpp"
@@ -11,26 +9,6 @@
 #include "run/input.hpp"
 
 namespace planemap {
-
-namespace {
-
-/// ", 1 min 20 s left", going by the pace so far; empty where that is not known.
-std::string time_left(std::optional<double> share, double elapsed_s) {
-    if (!share || !(*share > 0)) return {};
-    const double left_s = elapsed_s * std::max(1 / *share - 1, 0.0);
-    char text[48];
-    if (left_s < 60) {
-        std::snprintf(text, sizeof(text), ", %.0f s left", left_s);
-    } else if (left_s < 3600) {
-        std::snprintf(text, sizeof(text), ", %d min %02d s left", static_cast<int>(left_s) / 60,
-                      static_cast<int>(left_s) % 60);
-    } else {
-        std::snprintf(text, sizeof(text), ", %.1f h left", left_s / 3600);
-    }
-    return text;
-}
-
-}  // namespace
 
 Progress::Progress(bool quiet) : line_(quiet), start_(std::chrono::steady_clock::now()), last_(start_) {
     if (line_.is_drawn_in_place()) messages::log_over_a_drawn_line(true);

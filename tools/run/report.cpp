@@ -5,11 +5,11 @@
 #include <stdexcept>
 
 #include "core/files.hpp"
+#include "core/json_file.hpp"
 #include "evaluate/soundness_report.hpp"
 #include "run/losses.hpp"
 #include "run/report_text.hpp"
 #include "run/size_report.hpp"
-#include "sensor/json_file.hpp"
 
 namespace planemap {
 
@@ -148,7 +148,7 @@ Json read_report(const std::filesystem::path& folder) {
     std::error_code ignored;
     if (!std::filesystem::exists(file, ignored))
         throw std::runtime_error(file.string() + ": " + why_no_report(folder));
-    sensor::read_json_object(file);  // says where it is wrong, but keeps no order
+    read_json_object(file);  // says where it is wrong, but keeps no order
     return Json::parse(read_file(file));
 }
 

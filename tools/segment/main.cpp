@@ -2,11 +2,11 @@
 // planemap-segment: depth images to label images and regions.
 #include <cstdio>
 
+#include "core/camera_file.hpp"
 #include "core/standard_output.hpp"
 #include "messages/process.hpp"
 #include "segment/segment_images.hpp"
 #include "segmentation/segmentation_shell.hpp"
-#include "sensor/camera_file.hpp"
 
 namespace planemap {
 namespace {
@@ -24,7 +24,7 @@ constexpr const char* kDescription =
 
 int run(const SegmentImagesOptions& options, const std::filesystem::path& camera_file) {
     std::vector<std::string> notes;
-    const CameraInfo camera = sensor::read_camera_file(camera_file, &notes);
+    const CameraInfo camera = read_camera_file(camera_file, &notes);
     for (const std::string& note : notes) std::fprintf(stderr, "%s: %s\n", kProgram, note.c_str());
     const SegmentImagesReport report = segment_images(options, camera);
     for (const std::string& note : report.notes) std::fprintf(stderr, "%s: %s\n", kProgram, note.c_str());

@@ -9,7 +9,7 @@
 
 #include "core/camera.hpp"
 
-namespace planemap::sensor {
+namespace planemap {
 
 /// Reads a camera.json:
 ///   {"depth_camera": {"width": 640, "height": 480, "fx": 585, "fy": 585, "cx": 320, "cy": 240},
@@ -28,6 +28,10 @@ namespace planemap::sensor {
 /// keys with the nearest known one; syntax errors with line and column.
 CameraInfo read_camera_file(const std::filesystem::path& file, std::vector<std::string>* notes = nullptr);
 
+/// The text of a camera.json that read_camera_file() reads as the same camera, but for roundings of the
+/// rotation's last digits.
+std::string camera_file_text(const CameraInfo& camera);
+
 /// The published intrinsics of the TUM RGB-D benchmark's sensors (registered, 5000 units a metre) if the name
 /// of the folder holds "freiburg1", "freiburg2" or "freiburg3"; else nothing.
 std::optional<CameraInfo> tum_camera(std::string_view folder_name);
@@ -36,4 +40,4 @@ std::optional<CameraInfo> tum_camera(std::string_view folder_name);
 /// and std::runtime_error that shows what to write if there is neither.
 CameraInfo camera_of_folder(const std::filesystem::path& folder, std::vector<std::string>* notes = nullptr);
 
-}  // namespace planemap::sensor
+}  // namespace planemap

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sensor/camera_file.hpp"
+#include "core/camera_file.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,9 +12,9 @@
 #include "core/sensor_preset.hpp"
 #include "core/text_file.hpp"
 #include "core/validation.hpp"
-#include "sensor/json_file.hpp"
+#include "core/json_file.hpp"
 
-namespace planemap::sensor {
+namespace planemap {
 
 namespace {
 
@@ -273,7 +273,32 @@ constexpr const char* kExample =
     R"({"depth_camera": {"width": 640, "height": 480, "fx": 525, "fy": 525, "cx": 319.5, "cy": 239.5}, )"
     R"("depth_units_per_metre": 1000, "registered": true})";
 
+nlohmann::ordered_json pinhole_json(const PinholeCamera& camera) {
+    return {{"width", camera.width}, {"height", camera.height}, {"fx", camera.fx},
+            {"fy", camera.fy},       {"cx", camera.cx},         {"cy", camera.cy}};
+}
+
 }  // namespace
+
+std::string camera_file_text(const CameraInfo& camera) {
+    nlohmann::ordered_json file;
+    if (!camera.serial.empty()) file["serial"] = camera.serial;
+    file["depth_camera"] = pinhole_json(camera.depth);
+    if (!camera.registered || !(camera.color == camera.depth)) file["color_camera"] = pinhole_json(camera.color);
+    file["depth_units_per_metre"] = camera.depth_units_per_metre;
+    file["registered"] = camera.registered;
+    if (!camera.registered) {
+        const Eigen::AngleAxisd rotation(camera.color_from_depth.linear());
+        const Eigen::Vector3d r = rotation.angle() * rotation.axis(), t = camera.color_from_depth.translation();
+        file["color_from_depth"] = {{"rotation_vector_rad", {r.x(), r.y(), r.z()}},
+                                    {"translation_m", {t.x(), t.y(), t.z()}}};
+    }
+    file["depth_range_m"] = {camera.depth_min_m, camera.depth_max_m};
+    file["noise"] = {{"base_m", camera.noise.base_m},
+                     {"quadratic_per_m", camera.noise.quadratic_per_m},
+                     {"offset_m", camera.noise.offset_m}};
+    return file.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+}
 
 CameraInfo read_camera_file(const std::filesystem::path& file, std::vector<std::string>* notes) {
     json document;
@@ -331,4 +356,4 @@ CameraInfo camera_of_folder(const std::filesystem::path& folder, std::vector<std
         kExample);
 }
 
-}  // namespace planemap::sensor
+}  // namespace planemap

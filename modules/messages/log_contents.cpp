@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "run/log_contents.hpp"
+#include "messages/log_contents.hpp"
 
 #include <algorithm>
 #include <bot_core/images_t.hpp>
@@ -21,7 +21,7 @@
 
 #include "messages/decode.hpp"
 
-namespace planemap {
+namespace planemap::messages {
 
 namespace {
 
@@ -44,6 +44,8 @@ void add_our_names(Names& names) {
     (add_all_names<Types>(names), ...);
 }
 
+}  // namespace
+
 std::string type_name(std::uint64_t fingerprint) {
     static const Names names = [] {
         Names all;
@@ -61,16 +63,13 @@ std::string type_name(std::uint64_t fingerprint) {
     return text;
 }
 
-/// A channel's name as it may be printed.
 std::string printable(std::string name) {
     std::replace_if(
         name.begin(), name.end(), [](unsigned char c) { return c < ' ' || c > '~'; }, '?');
     return name;
 }
 
-}  // namespace
-
-void LogContents::add(const messages::LogEvent& event) {
+void LogContents::add(const LogEvent& event) {
     ++count_;
     const std::pair key(event.channel, messages::fingerprint_of(event.bytes));
     if (messages_.size() < kMaxRows || messages_.count(key) > 0) {
@@ -90,4 +89,4 @@ std::string LogContents::text() const {
     return text.empty() ? "nothing" : text;
 }
 
-}  // namespace planemap
+}  // namespace planemap::messages

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sensor/json_file.hpp"
+#include "core/json_file.hpp"
 
 #include <algorithm>
 #include <set>
@@ -9,7 +9,7 @@
 
 #include "core/text_file.hpp"
 
-namespace planemap::sensor {
+namespace planemap {
 
 namespace {
 
@@ -89,4 +89,4 @@ json read_json_object(const std::filesystem::path& file) {
     }
 }
 
-}  // namespace planemap::sensor
+}  // namespace planemap

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sensor/json_file.hpp"
+#include "core/json_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "temporary_folder.hpp"
 
-namespace planemap::sensor {
+namespace planemap {
 namespace {
 
 using testing::AllOf;
@@ -62,4 +62,4 @@ TEST(JsonFile, EveryTruncationAndChangedByteIsAnErrorOrAnObject) {
 }
 
 }  // namespace
-}  // namespace planemap::sensor
+}  // namespace planemap

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sensor/camera_file.hpp"
+#include "core/camera_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include "data_folder.hpp"
 #include "temporary_folder.hpp"
 
-namespace planemap::sensor {
+namespace planemap {
 namespace {
 
 using testing::AllOf;
@@ -273,4 +273,4 @@ TEST(CameraFile, TheExampleOfTheErrorIsComplete) {
 }
 
 }  // namespace
-}  // namespace planemap::sensor
+}  // namespace planemap

@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Bags as drivers and RealSense's SDK write them, small ones made here.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "convert/bag_source.hpp"
+#include "convert/bag_writer.hpp"
+#include "core/files.hpp"
+#include "messages/image_codec.hpp"
+#include "sensor/png.hpp"
+#include "temporary_folder.hpp"
+
+namespace planemap::convert {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr std::uint32_t kWidth = 32, kHeight = 24, kColorWidth = 64, kColorHeight = 48;
+
+/// A message's bytes as ROS serialises them.
+class Message {
+  public:
+    Message() = default;
+    Message(std::string type) : type_(std::move(type)) {}
+    template <typename T>
+    Message& number(T value) {
+        const auto* bytes = reinterpret_cast<const std::uint8_t*>(&value);
+        bytes_.insert(bytes_.end(), bytes, bytes + sizeof(T));
+        return *this;
+    }
+    Message& numbers(const std::vector<double>& values) {
+        for (const double value : values) number(value);
+        return *this;
+    }
+    Message& data(const std::vector<std::uint8_t>& bytes) {
+        number(static_cast<std::uint32_t>(bytes.size()));
+        bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+        return *this;
+    }
+    Message& text(const std::string& text) { return data({text.begin(), text.end()}); }
+    Message& header(std::int64_t utime, const std::string& frame) {
+        number(std::uint32_t{7}).number(static_cast<std::uint32_t>(utime / 1000000));
+        return number(static_cast<std::uint32_t>(utime % 1000000 * 1000)).text(frame);
+    }
+    const std::string& type() const { return type_; }
+    const std::vector<std::uint8_t>& bytes() const { return bytes_; }
+
+  private:
+    std::string type_;
+    std::vector<std::uint8_t> bytes_;
+};
+
+Message image(std::int64_t utime, const std::string& frame, std::uint32_t width, std::uint32_t height,
+              const std::string& encoding, std::uint32_t step, const std::vector<std::uint8_t>& data) {
+    return Message("sensor_msgs/Image")
+        .header(utime, frame)
+        .number(height)
+        .number(width)
+        .text(encoding)
+        .number(std::uint8_t{0})
+        .number(step)
+        .data(data);
+}
+
+std::vector<std::uint8_t> depth_bytes() {
+    const std::vector<std::uint16_t> pixels(kWidth * kHeight, 1500);
+    std::vector<std::uint8_t> bytes(2 * pixels.size());
+    std::memcpy(bytes.data(), pixels.data(), bytes.size());
+    return bytes;
+}
+
+Message depth_image(std::int64_t utime, const std::string& frame, const std::string& encoding = "16UC1") {
+    return image(utime, frame, kWidth, kHeight, encoding, 2 * kWidth, depth_bytes());
+}
+
+Message color_image(std::int64_t utime, const std::string& frame, std::uint32_t width = kColorWidth) {
+    std::vector<std::uint8_t> data;
+    for (std::uint32_t i = 0; i < kColorWidth * kColorHeight; ++i) data.insert(data.end(), {30, 20, 10});
+    return image(utime, frame, width, kColorHeight, "bgr8", 3 * kColorWidth, data);
+}
+
+Message compressed(std::int64_t utime, const std::string& format, const std::vector<std::uint8_t>& data) {
+    return Message("sensor_msgs/CompressedImage").header(utime, "optical").text(format).data(data);
+}
+
+Message camera_info(std::uint32_t width, std::uint32_t height, double f) {
+    Message info("sensor_msgs/CameraInfo");
+    info.header(1, "optical").number(height).number(width).text("plumb_bob").number(std::uint32_t{0});
+    info.numbers({f, 0, width / 2.0, 0, f, height / 2.0, 0, 0, 1});
+    return info.numbers(std::vector<double>(9)).numbers(std::vector<double>(12));
+}
+
+/// A translation along x.
+Message transform(double x) {
+    return Message("geometry_msgs/Transform").numbers({x, 0, 0, 0, 0, 0, 1});
+}
+
+Message transforms(const std::vector<std::pair<std::string, double>>& children) {
+    Message all("tf2_msgs/TFMessage");
+    all.number(static_cast<std::uint32_t>(children.size()));
+    for (const auto& [child, x] : children) all.header(1, "link").text(child).numbers({x, 0, 0, 0, 0, 0, 1});
+    return all;
+}
+
+struct BagTest : testing::Test {
+    void write(const std::string& topic, std::int64_t utime, const Message& message) {
+        bag.write(topic, utime, message.type(), message.bytes());
+    }
+    void write_infos(const std::string& depth = "/camera/depth/camera_info",
+                     const std::string& color = "/camera/color/camera_info") {
+        write(depth, kStart, camera_info(kWidth, kHeight, 30));
+        write(color, kStart, camera_info(kColorWidth, kColorHeight, 55));
+    }
+    std::unique_ptr<FrameSource> open(const BagOptions& options = {}) {
+        bag.close();
+        return open_bag(file, options);
+    }
+    std::string error(const BagOptions& options = {}) {
+        return test::error_of([&] { open(options); });
+    }
+
+    static constexpr std::int64_t kStart = 1600000000000000;
+    test::TemporaryFolder folder;
+    std::filesystem::path file = folder / "a.bag";
+    BagWriter bag{file.string()};
+};
+
+TEST_F(BagTest, ImagesOfADriverWithTransformsBetweenItsCameras) {
+    write_infos();
+    write("/tf_static", kStart, transforms({{"depth_optical", 0.01}, {"color_optical", 0.025}}));
+    for (int i = 0; i < 3; ++i) {
+        write("/camera/depth/image_raw", kStart + 33000 * i + 9,
+              depth_image(kStart + 33000 * i, "depth_optical"));
+        write("/camera/color/image_raw", kStart + 33000 * i + 8000,
+              color_image(kStart + 33000 * i + 5000, "color_optical"));
+        write("/camera/infra1/image_raw", kStart + 33000 * i,
+              color_image(kStart + 33000 * i, "depth_optical"));
+    }
+    write("/camera/color/image_raw", kStart + 500000,
+          color_image(kStart + 500000, "color_optical"));  // alone
+    const auto source = open();
+    EXPECT_FALSE(source->camera().registered);
+    EXPECT_NEAR(source->camera().color_from_depth.translation().x(), -0.015, 1e-12);
+    EXPECT_EQ(source->camera().depth, (PinholeCamera{32, 24, 30, 30, 16, 12}));
+    EXPECT_EQ(source->camera().color, (PinholeCamera{64, 48, 55, 55, 32, 24}));
+    EXPECT_EQ(source->camera().depth_units_per_metre, 1000);
+    EXPECT_EQ(source->size(), 3u);
+    SensorFrame frame;
+    for (int i = 0; i < 3; ++i) {
+        const ReadResult result = source->next(frame);
+        ASSERT_EQ(result.status, ReadResult::Status::kFrame) << result.message;
+        EXPECT_EQ(frame.utime, kStart + 33000 * i);
+        EXPECT_EQ(frame.color_utime, kStart + 33000 * i + 5000);
+        EXPECT_EQ(frame.depth(3, 3), 1500);
+        EXPECT_EQ(frame.color(3, 3), (Rgb{10, 20, 30}));
+    }
+    EXPECT_EQ(source->next(frame).status, ReadResult::Status::kEnd);
+    ASSERT_EQ(source->complaints().size(), 1u);
+    EXPECT_THAT(source->complaints()[0], HasSubstr("1 colour images without depth"));
+}
+
+TEST_F(BagTest, DepthInTheColourCamerasFrameIsRegistered) {
+    write_infos();
+    write("/camera/depth/image", kStart, depth_image(kStart, "optical"));
+    write("/camera/color/image_color", kStart, color_image(kStart, "optical"));
+    EXPECT_TRUE(open()->camera().registered);
+}
+
+TEST_F(BagTest, CompressedImages) {
+    write_infos();
+    const auto jpeg = messages::encode_jpeg(RgbImage(64, 48, {9, 9, 9}), 90);
+    sensor::write_depth_png(folder / "d.png", DepthImage(32, 24, 777));
+    const std::string png = std::string(12, '\0') + read_file(folder / "d.png");
+    write("/camera/color/image_raw/compressed", kStart,
+          compressed(kStart, "bgr8; jpeg compressed bgr8", jpeg));
+    write("/camera/depth/image_raw/compressedDepth", kStart,
+          compressed(kStart, "16UC1; compressedDepth", {png.begin(), png.end()}));
+    const auto source = open();
+    SensorFrame frame;
+    const ReadResult result = source->next(frame);
+    ASSERT_EQ(result.status, ReadResult::Status::kFrame) << result.message;
+    EXPECT_EQ(frame.depth(1, 1), 777);
+    EXPECT_EQ(frame.color_jpeg, jpeg) << "as it was stored";
+}
+
+/// The SDK's images have the unit of depth behind them, and the cameras' poses are messages.
+TEST_F(BagTest, RealSensesOwnTopics) {
+    const std::string depth = "/device_0/sensor_0/Depth_0", color = "/device_0/sensor_1/Color_0";
+    write_infos(depth + "/info/camera_info", color + "/info/camera_info");
+    write(depth + "/tf/0", kStart, transform(0));
+    write(color + "/tf/0", kStart, transform(0.0148));
+    write("/device_0/sensor_0/option/Depth_Units/value", kStart, Message("std_msgs/Float32").number(0.001f));
+    write("/device_0/info", kStart, Message("diagnostic_msgs/KeyValue").text("Serial Number").text("0123"));
+    write(depth + "/image/data", kStart, depth_image(kStart, "1", "mono16").number(0.00025f));
+    write(color + "/image/data", kStart, color_image(kStart, "1"));
+    const auto source = open();
+    EXPECT_FALSE(source->camera().registered);
+    EXPECT_NEAR(source->camera().color_from_depth.translation().x(), 0.0148, 1e-12);
+    EXPECT_NEAR(source->camera().depth_units_per_metre, 4000, 1e-6);
+    EXPECT_EQ(source->camera().serial, "0123");
+    SensorFrame frame;
+    const ReadResult result = source->next(frame);
+    ASSERT_EQ(result.status, ReadResult::Status::kFrame) << result.message;
+    EXPECT_EQ(frame.depth(31, 23), 1500);
+    EXPECT_EQ(frame.color_utime, kStart);
+}
+
+TEST_F(BagTest, WhatIsMissingIsNamedWithTheWayOut) {
+    write("/camera/depth/image_raw", kStart, depth_image(kStart, "depth_optical"));
+    write("/camera/color/image_raw", kStart, color_image(kStart, "color_optical"));
+    EXPECT_THAT(error(), HasSubstr("no CameraInfo on /camera/depth/camera_info; give --camera camera.json"));
+    EXPECT_THAT(error({.depth_topic = "/x", .color_topic = {}, .camera = {}}),
+                HasSubstr("no images on /x; in it are /camera/color"));
+}
+
+TEST_F(BagTest, CamerasThatNothingTiesAreNamed) {
+    write_infos();
+    write("/camera/depth/image_raw", kStart, depth_image(kStart, "depth_optical"));
+    write("/camera/color/image_raw", kStart, color_image(kStart, "color_optical"));
+    EXPECT_THAT(error(),
+                HasSubstr("nothing in it says how /camera/depth/image_raw lies to /camera/color/image_raw; "
+                          "give --camera camera.json"));
+}
+
+TEST_F(BagTest, WithoutDepthThereIsNothing) {
+    write("/camera/color/image_raw", kStart, color_image(kStart, "color_optical"));
+    EXPECT_THAT(
+        error(),
+        HasSubstr("no topic with depth images; in it are /camera/color/image_raw sensor_msgs/Image (bgr8)"));
+}
+
+TEST_F(BagTest, BrokenImagesAreCountedByTheirReason) {
+    write_infos();
+    write("/camera/depth/image", kStart, depth_image(kStart - 1000, "optical"));
+    write("/camera/depth/image", kStart,
+          image(kStart, "optical", kWidth, kHeight, "16UC1", 64, std::vector<std::uint8_t>(100)));
+    write("/camera/color/image_color", kStart + 100000, color_image(kStart + 100000, "optical", 7));
+    write("/camera/depth/image", kStart + 100000, depth_image(kStart + 100000, "optical"));
+    const auto source = open();
+    SensorFrame frame;
+    EXPECT_EQ(source->next(frame).status, ReadResult::Status::kFrame);
+    const ReadResult broken = source->next(frame);
+    EXPECT_EQ(broken.status, ReadResult::Status::kBroken);
+    EXPECT_THAT(broken.reason, HasSubstr("100 bytes in rows of 64 do not hold 32x24"));
+    const ReadResult colorless = source->next(frame);
+    EXPECT_TRUE(colorless.color_left_out);
+    EXPECT_THAT(colorless.reason, HasSubstr("7x48"));
+    EXPECT_EQ(source->next(frame).status, ReadResult::Status::kEnd);
+}
+
+TEST_F(BagTest, DamagedBagsAreOneLine) {
+    write_infos();
+    for (int i = 0; i < 5; ++i) write("/camera/depth/image", kStart + i, depth_image(kStart + i, "optical"));
+    bag.close();
+    const std::string whole = read_file(file);
+    for (const std::size_t size : {std::size_t{13}, std::size_t{100}, whole.size() / 2, whole.size() - 20}) {
+        write_file(file, whole.substr(0, size));
+        const std::string said = test::error_of([&] { open_bag(file, {}); });
+        EXPECT_THAT(said, HasSubstr("a.bag: ")) << size;
+    }
+}
+
+}  // namespace
+}  // namespace planemap::convert
