@@ -38,12 +38,10 @@ struct ConvertTest : test::Programs {
 
 /// What is written once comes back as it was: depth, stamps, truth, and what planemap-run makes of it.
 TEST_F(ConvertTest, FolderToLogToFolderLosesNothing) {
-    for (const char* registered : {"", "&registered=1"}) {
+    for (const char* registered : {"", "&registered=0"}) {
         const std::string world =
             std::string("'sim:office?frames=8&width=320&height=240&seed=3") + registered + "'";
         const std::string n = std::to_string(std::string(registered).size());
-        if (run("planemap-convert", world + " --output " + path("probe" + n)).exit_code != 0)
-            continue;  // no such key
         convert(world, path("a" + n));
         convert(path("a" + n), path("b" + n) + ".lcmlog");
         convert(path("b" + n) + ".lcmlog", path("c" + n));
