@@ -110,7 +110,8 @@ std::int64_t LogReader::lost_between(std::uint64_t bytes, const LogRecord* next)
             return static_cast<std::int64_t>(missing);
     }
     if (events_ == 0) return 1;
-    const std::uint64_t good = at_ - skipped_ - bytes, mean = std::max<std::uint64_t>(1, good / events_);
+    const std::uint64_t good = at_ - skipped_ - bytes,
+                        mean = std::max<std::uint64_t>(1, good / static_cast<std::uint64_t>(events_));
     return std::max<std::int64_t>(1, static_cast<std::int64_t>((bytes + mean / 2) / mean));
 }
 

@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr double kHallX = 14, kHallY = 5, kHallZ = 3;  // the hall is [0, x] x [0, y] x [0, z]
-constexpr double kBareFrom = 4, kBareTo = 10;          // of the north wall, along x
+constexpr double kBareTo = 10;                         // the north wall is bare from 4 m to here, along x
 
 /// Along the north wall at 1.3 m, looking straight at it, and back.
 std::vector<Waypoint> wall_tour() {

@@ -15,6 +15,8 @@ namespace planemap::messages {
 namespace {
 
 using test::encoded;
+using test::sample_map;
+using test::sample_trajectory;
 
 bot_core::images_t sample_images() {
     bot_core::images_t images;
@@ -25,23 +27,6 @@ bot_core::images_t sample_images() {
     set_seq(images.images.back(), 9);
     images.n_images = 2;
     return images;
-}
-
-PlaneMap sample_map() {
-    PlaneMap map;
-    for (int id : {1, 4, 9}) {
-        const Pose pose = make_pose({0, 0, 0}, Eigen::Quaterniond(1, 0.1 * id, 0.03 * id * id, 0));
-        map.planes.emplace_back(id, pose * test::sample_region(), 1);
-    }
-    map.lines.push_back({1, 4, {0, 0, 0}, {1, 0, 0}});
-    map.points.push_back({{1, 4, 9}, {0, 0, 1}});
-    return map;
-}
-
-KeyframeTrajectory sample_trajectory() {
-    KeyframeTrajectory trajectory;
-    for (int id = 0; id < 4; ++id) trajectory.keyframes.push_back({id, 100 * id, Pose::Identity()});
-    return trajectory;
 }
 
 kinect::frame_msg_t sample_kinect() {

@@ -56,6 +56,23 @@ inline Keyframe sample_keyframe() {
     return keyframe;
 }
 
+inline PlaneMap sample_map() {
+    PlaneMap map;
+    for (int id : {1, 4, 9}) {
+        const Pose pose = make_pose({0, 0, 0}, Eigen::Quaterniond(1, 0.1 * id, 0.03 * id * id, 0));
+        map.planes.emplace_back(id, pose * sample_region(), 1);
+    }
+    map.lines.push_back({1, 4, {0, 0, 0}, {1, 0, 0}});
+    map.points.push_back({{1, 4, 9}, {0, 0, 1}});
+    return map;
+}
+
+inline KeyframeTrajectory sample_trajectory() {
+    KeyframeTrajectory trajectory;
+    for (int id = 0; id < 4; ++id) trajectory.keyframes.push_back({id, 100 * id, Pose::Identity()});
+    return trajectory;
+}
+
 template <typename T>
 std::vector<std::uint8_t> encoded(const T& message) {
     std::vector<std::uint8_t> bytes(static_cast<std::size_t>(message.getEncodedSize()));

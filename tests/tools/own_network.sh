@@ -39,6 +39,42 @@ enter_own_network() {
     fi
 }
 
+# make_hosts NAME NAME: two hosts, each a network namespace inside the one that the script is in, with their cables here;
+# their programs hear each other once connect_hosts is called.
+declare -A host_pid=()
+link_pid=
+make_hosts() {
+    local name number=0
+    for name in "$@"; do
+        unshare --net sleep infinity &
+        host_pid[$name]=$!
+        while [[ "$(readlink "/proc/${host_pid[$name]}/ns/net")" == "$(readlink /proc/$$/ns/net)" ]]; do sleep 0.01; done
+        number=$((number + 1))
+        ip link add "to_$name" type veth peer name eth0 netns "${host_pid[$name]}"
+        ip link set "to_$name" up
+        on "$name" ip link set lo up
+        on "$name" ip address add "10.77.0.$number/24" dev eth0
+        on "$name" ip link set eth0 up
+        on "$name" ip route add 224.0.0.0/4 dev eth0
+    done
+}
+# on HOST COMMAND...: in place of a subshell or as it is.
+on() { nsenter --net="/proc/${host_pid[$1]}/ns/net" "${@:2}"; }
+# connect_hosts LOSSY_LINK LOSS JITTER_MS: until disconnect_hosts, which sets udp_sent and udp_lost to what crossed.
+connect_hosts() {
+    "$1" "${!host_pid[@]/#/to_}" "$2" "$3" >"$work/link.txt" &
+    link_pid=$!
+}
+disconnect_hosts() {
+    local word
+    kill -TERM "$link_pid"
+    wait "$link_pid"
+    link_pid=
+    # shellcheck disable=SC2034  # for the script that sources this
+    read -r word udp_sent word udp_lost <"$work/link.txt"
+}
+stop_hosts() { kill "${host_pid[@]}" $link_pid 2>/dev/null || true; }
+
 # events LOG CHANNEL: how many events of a channel an LCM log holds.
 events() {
     perl -e '
@@ -54,18 +90,19 @@ events() {
         print $count;' "$1" "$2"
 }
 
-# wait_for_modules LOG: until a running tools/launch --no-sensor --log LOG has recorded that the segmentation is there:
+# wait_for_modules LOG [PREFIX]: until a running tools/launch --no-sensor --log LOG has recorded that the segmentation is there:
 # every module says so on the bus once a second.
 wait_for_modules() {
     local attempt
     for ((attempt = 0; attempt < 150; attempt++)); do
-        [[ -f "$1" && "$(events "$1" PLANEMAP_STATUS_SEGMENTATION)" -gt 0 ]] && return
+        [[ -f "$1" && "$(events "$1" "${2:-}PLANEMAP_STATUS_SEGMENTATION")" -gt 0 ]] && return
         sleep 0.1
     done
 }
 
 # launch ARGS...: tools/launch of $root with $bin and $url in place of this subshell; its process id goes into launch_pid.
 launch() { exec setpriv --pdeathsig TERM "$root/tools/launch" --bin "$bin" --lcm-url "$url" "$@"; }
+launch_on() { on "$1" setpriv --pdeathsig TERM "$root/tools/launch" --bin "$bin" --lcm-url "$url" "${@:2}"; }
 
 # replay LOG RECORDED OUTPUT PLAYER-ARGS...: plays what a camera sent in LOG into the modules; all that is on the bus goes
 # into the log RECORDED, and the map into the folder OUTPUT. Returns the exit code of what went wrong.

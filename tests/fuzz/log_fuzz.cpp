@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fuzz/fuzz.hpp"
+#include "messages/log.hpp"
+
+namespace planemap::fuzz {
+
+void fuzz(Bytes bytes) {
+    const MemoryFile file(bytes);
+    messages::LogReader log(file.path());
+    messages::LogEvent event;
+    std::uint64_t taken = 0;
+    while (log.next(event)) {
+        taken += messages::encode_event(event).size();
+        require(log.bytes_read() <= bytes.size(), "an event ends in the file");
+    }
+    require(taken + log.bytes_skipped() + log.zeros_at_end() >= bytes.size() &&
+                taken + log.bytes_skipped() <= bytes.size(),
+            "each byte belongs to an event, or was skipped");
+    require((log.gap_count() == 0) == (log.bytes_skipped() == log.zeros_at_end()),
+            "bytes that were skipped are told as gaps");
+    require(log.gaps().size() <= messages::LogReader::kMaxGaps, "told gaps are bounded");
+    require(!log.next(event), "the end stays the end");
+    log.complaints();
+}
+
+std::vector<std::string> seeds() {
+    std::string log, inner;
+    for (int i = 0; i < 4; ++i)
+        inner += messages::encode_event({i, 1000000 + 5 * i, "INNER", std::vector<std::uint8_t>(9, 1)});
+    for (int i = 0; i < 4; ++i) {
+        messages::LogEvent event{i, 2000000 + 33333 * i, "OPENNI_FRAME", std::vector<std::uint8_t>(20, 7)};
+        if (i == 2) event.bytes.assign(inner.begin(), inner.end());
+        log += messages::encode_event(event);
+    }
+    std::string flipped = log;
+    flipped[24] = static_cast<char>(flipped[24] ^ 0x10);
+    return {log, log.substr(0, log.size() - 7), "stray" + log, log + std::string(40, '\0'), flipped};
+}
+
+}  // namespace planemap::fuzz
