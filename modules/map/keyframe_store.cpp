@@ -76,8 +76,11 @@ KeyframeStore::Arrival KeyframeStore::add(const Keyframe& keyframe, MapLosses& l
         return Arrival::kRefused;
     }
     const auto earlier = keyframes_.find(keyframe.id);
-    const bool is_known = earlier != keyframes_.end() && is_in_map(earlier->second);
-    if (is_known && earlier->second.utime != keyframe.utime) {
+    if (earlier != keyframes_.end() && earlier->second.utime == keyframe.utime) {
+        ++losses.keyframes_again;
+        return Arrival::kRefused;
+    }
+    if (earlier != keyframes_.end() && is_in_map(earlier->second)) {
         // An odometry that started again: the pose is not its.
         ++losses.keyframes_of_others;
         return Arrival::kRefused;
@@ -85,7 +88,7 @@ KeyframeStore::Arrival KeyframeStore::add(const Keyframe& keyframe, MapLosses& l
     newest_id_ = std::max(newest_id_, keyframe.id);
     StoredKeyframe& kept = keyframes_[keyframe.id] = stored(keyframe.utime, usable_regions(keyframe, losses));
     kept.noise = keyframe.noise;
-    return is_known ? Arrival::kAgain : Arrival::kNew;
+    return Arrival::kNew;
 }
 
 void KeyframeStore::set_pose(int id, const Pose& world_from_camera) {

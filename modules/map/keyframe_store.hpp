@@ -21,10 +21,10 @@ class KeyframeStore {
 
     enum class Arrival {
         kRefused,
-        kNew,    ///< it is not in the map yet
-        kAgain,  ///< it replaces one that is in the map, which has to be made anew
+        kNew,  ///< it is not in the map yet
     };
-    /// Takes what the map needs of a keyframe, its largest regions first. Counts what it refuses.
+    /// Takes what the map needs of a keyframe, its largest regions first. Counts what it refuses, one that
+    /// came before, too: who sends it again has nothing new to say.
     Arrival add(const Keyframe& keyframe, MapLosses& losses);
     /// Takes the pose of one keyframe; one that is none, or too far out, is ignored.
     void set_pose(int id, const Pose& world_from_camera);

@@ -51,16 +51,8 @@ void PlaneMapper::start_from(const PlaneMap& map) {
 }
 
 void PlaneMapper::add(const Keyframe& keyframe) {
-    switch (keyframes_.add(keyframe, losses_)) {
-        case KeyframeStore::Arrival::kRefused:
-            return;
-        case KeyframeStore::Arrival::kAgain:
-            rebuild();
-            break;
-        case KeyframeStore::Arrival::kNew:
-            place(keyframe.id);
-            break;
-    }
+    if (keyframes_.add(keyframe, losses_) == KeyframeStore::Arrival::kRefused) return;
+    place(keyframe.id);
     losses_.keyframes_unplaced += keyframes_.drop_waiting(kMaxWaiting);
     refresh();
 }

@@ -13,6 +13,7 @@ struct MapLosses {
     std::size_t planes_refused = 0;    ///< of start_from()
     std::size_t poses_refused = 0;     ///< of trajectories: no pose, or more than 100 km away
     std::size_t keyframes_unplaced = 0;   ///< that waited for a pose while 4096 newer ones came
+    std::size_t keyframes_again = 0;      ///< with the id and time of one that came before
     std::size_t keyframes_too_late = 0;   ///< that came again after they were folded
     std::size_t keyframes_far_ahead = 0;  ///< with an id more than 10,000 after the largest one
     std::size_t keyframes_of_others = 0;  ///< with the id of one in the map, and another time

@@ -90,6 +90,7 @@ void MapShell::tell_losses() {
     tell("planes of the map to start from that are out of range", &MapLosses::planes_refused);
     tell("keyframe poses that are none or out of range", &MapLosses::poses_refused);
     tell("keyframes without a pose", &MapLosses::keyframes_unplaced, true);
+    tell("keyframes that came twice", &MapLosses::keyframes_again, true);
     tell("keyframes that came again after they were folded", &MapLosses::keyframes_too_late, true);
     tell("keyframes with an id out of order", &MapLosses::keyframes_far_ahead, true);
     tell("keyframes of another odometry, with an id that is taken", &MapLosses::keyframes_of_others, true);

@@ -19,6 +19,10 @@ bool StreamGuard::admits(std::int64_t session, std::int32_t seq, std::optional<s
         if (main_stream_) status_.lost(things_ + " that came twice");
         return false;
     }
+    if (verdict == Verdict::kLate && !main_stream_) {
+        status_.lost(things_ + " that came late");
+        return false;
+    }
     if (main_stream_ && verdict != Verdict::kForeign) status_.received(message.seq);
     if (verdict != Verdict::kForeign && verdict != Verdict::kWentBack) return true;
     status_.lost(things_ +

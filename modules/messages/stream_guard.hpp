@@ -16,14 +16,15 @@ namespace planemap::messages {
 class StreamGuard {
   public:
     /// What is not admitted counts in `status` as lost `things`, plural; if they are the module's main
-    /// stream, those of the sender count as received.
+    /// stream, those of the sender count as received. Beside it each message takes the place of those before.
     StreamGuard(const std::string& channel, std::string things, ModuleStatus& status, bool main_stream = true)
         : guard_(channel), things_(std::move(things)), status_(status), main_stream_(main_stream) {}
 
     /// Whether to use a message; `session` is the sender's id, or 0 if it does not say. One that repeats the
     /// last, byte for byte, is not used; beside the main stream it is for those who came late, in it (nobody
-    /// sends those again but a replay of an old log) it is counted. One that comes late is admitted: the
-    /// module knows what it can do with it.
+    /// sends those again but a replay of an old log) it is counted. One that comes late is admitted to the
+    /// main stream: the module knows what it can do with it; beside that, what came since has taken its
+    /// place.
     bool admits(std::int64_t session, std::int32_t seq, std::optional<std::int64_t> utime,
                 std::span<const std::uint8_t> bytes);
 

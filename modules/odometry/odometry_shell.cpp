@@ -66,6 +66,10 @@ void OdometryShell::on_regions(const messages::RawMessage& message) {
         process_ready(kMaxWaiting);
         return;
     }
+    const bool twice = std::any_of(early_regions_.begin(), early_regions_.end(),
+                                   [&](const auto& early) { return early.utime == regions.utime; });
+    if (twice || (handled_utime_ && regions.utime <= *handled_utime_))
+        return status_.lost("regions that came late or twice");
     early_regions_.push_back(std::move(regions));
     if (early_regions_.size() > kMaxWaiting) {
         early_regions_.pop_front();
@@ -83,6 +87,7 @@ void OdometryShell::process_ready(std::size_t max_waiting) {
 void OdometryShell::process_front() {
     const Waiting input = std::move(waiting_.front());
     waiting_.pop_front();
+    handled_utime_ = input.frame->utime();
     if (!input.regions) status_.lost("frames handled without their regions");
     process(input);
 }

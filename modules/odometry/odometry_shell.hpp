@@ -55,9 +55,10 @@ class OdometryShell : public messages::Shell {
     messages::ModuleStatus status_{"odometry"};
     std::deque<Waiting> waiting_;
     std::deque<messages::FrameRegions>
-        early_regions_;   ///< of frames that have not come yet; at most kMaxWaiting
-    int missing_ = 0;     ///< frames in a row that waited in vain
-    bool heard_ = false;  ///< a message came since the last poll()
+        early_regions_;                          ///< of frames that have not come yet; at most kMaxWaiting
+    std::optional<std::int64_t> handled_utime_;  ///< of the last frame that was handled
+    int missing_ = 0;                            ///< frames in a row that waited in vain
+    bool heard_ = false;                         ///< a message came since the last poll()
     std::int32_t odometry_seq_ = 0, keyframe_seq_ = 0;
 };
 

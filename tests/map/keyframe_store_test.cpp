@@ -55,8 +55,9 @@ TEST(KeyframeStore, AKeyframeIsPlacedOnceBothItAndItsPoseAreThere) {
         ASSERT_NE(keyframe, nullptr);
         EXPECT_TRUE(keyframe->world_from_camera->isApprox(camera_at({1, 0, 0})));
         EXPECT_EQ(store->waiting(), 0u);
-        EXPECT_EQ(store->add(seen_by(3), losses), Arrival::kAgain);
+        EXPECT_EQ(store->add(seen_by(3), losses), Arrival::kRefused) << "no map is made anew for it";
     }
+    EXPECT_EQ(losses.keyframes_again, 2u);
 }
 
 TEST(KeyframeStore, CountsWhatItRefuses) {

@@ -73,5 +73,21 @@ TEST_F(Admission, ALateOneIsAdmitted) {
     EXPECT_TRUE(status_.losses().empty());
 }
 
+TEST_F(Admission, BesideTheMainStreamALateOneIsOutdated) {
+    StreamGuard trajectories("PLANEMAP_TRAJECTORY", "trajectories", status_, false);
+    const auto admits = [&](int seq) {
+        return trajectories.admits(7, seq, std::nullopt,
+                                   std::vector<std::uint8_t>{static_cast<std::uint8_t>(seq)});
+    };
+    for (const int seq : {0, 1, 2, 4, 5}) EXPECT_TRUE(admits(seq));
+    EXPECT_FALSE(admits(3)) << "the map would go back to it";
+    EXPECT_FALSE(admits(1));
+    EXPECT_TRUE(admits(6));
+    std::int64_t lost = 0;
+    for (const auto& [what, count] : status_.losses()) lost += count;
+    EXPECT_EQ(lost, 2);
+    EXPECT_EQ(status_.dropped_count(), 0);
+}
+
 }  // namespace
 }  // namespace planemap::messages

@@ -151,6 +151,25 @@ TEST_F(OdometryShellTest, RegionsMayComeFirst) {
     EXPECT_EQ(estimates->size(), 1u);
 }
 
+TEST_F(OdometryShellTest, RegionsThatComeTwiceOrTooLateTakeNoPlaceOfEarlyOnes) {
+    OdometryShell shell(bus_, std::make_shared<messages::FrameDecoder>(bus_), {});
+    publish_camera();
+    const auto stamp = [](int i) { return 1000000 + 33333 * std::int64_t{i}; };
+    for (int i = 0; i < 12; ++i) {
+        bus_.publish(messages::channels::kFrame, frame(stamp(i), 0.01 * i));
+        publish_regions(stamp(i));
+        bus_.drain();
+    }
+    publish_regions(stamp(12));  // early
+    publish_regions(stamp(12));
+    for (int i = 0; i < 12; ++i) publish_regions(stamp(i));
+    bus_.publish(messages::channels::kFrame, frame(stamp(12), 0.12));
+    bus_.drain();
+    const auto& losses = shell.status().losses();
+    EXPECT_EQ(losses.size(), 1u) << "the last frame has its regions: " << shell.status().line();
+    EXPECT_EQ(losses.at("regions that came late or twice"), 13);
+}
+
 TEST_F(OdometryShellTest, WhatIsWrongWithALostFramesDepthIsCounted) {
     OdometryShell shell(bus_, std::make_shared<messages::FrameDecoder>(bus_), {});
     const auto publish = [&](const CameraInfo& info, std::uint16_t raw, std::int64_t utime) {

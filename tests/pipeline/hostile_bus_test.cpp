@@ -11,6 +11,7 @@
 #include "graph/graph_shell.hpp"
 #include "map/map_shell.hpp"
 #include "messages/channels.hpp"
+#include "messages/convert.hpp"
 #include "messages/decode.hpp"
 #include "messages/process.hpp"
 #include "octomap/octomap_shell.hpp"

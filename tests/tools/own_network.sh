@@ -58,12 +58,15 @@ make_hosts() {
         on "$name" ip route add 224.0.0.0/4 dev eth0
     done
 }
-# on HOST COMMAND...: in place of a subshell or as it is.
+# on HOST COMMAND...; and in place of this subshell, so that its process id is the command's.
 on() { nsenter --net="/proc/${host_pid[$1]}/ns/net" "${@:2}"; }
+exec_on() { exec nsenter --net="/proc/${host_pid[$1]}/ns/net" setpriv --pdeathsig TERM "${@:2}"; }
 # connect_hosts LOSSY_LINK LOSS JITTER_MS: until disconnect_hosts, which sets udp_sent and udp_lost to what crossed.
 connect_hosts() {
-    "$1" "${!host_pid[@]/#/to_}" "$2" "$3" >"$work/link.txt" &
+    local names=("${!host_pid[@]}")
+    "$1" "${names[@]/#/to_}" "$2" "$3" >"$work/link.txt" &
     link_pid=$!
+    sleep 0.2
 }
 disconnect_hosts() {
     local word
@@ -102,7 +105,7 @@ wait_for_modules() {
 
 # launch ARGS...: tools/launch of $root with $bin and $url in place of this subshell; its process id goes into launch_pid.
 launch() { exec setpriv --pdeathsig TERM "$root/tools/launch" --bin "$bin" --lcm-url "$url" "$@"; }
-launch_on() { on "$1" setpriv --pdeathsig TERM "$root/tools/launch" --bin "$bin" --lcm-url "$url" "${@:2}"; }
+launch_on() { exec_on "$1" "$root/tools/launch" --bin "$bin" --lcm-url "$url" "${@:2}"; }
 
 # replay LOG RECORDED OUTPUT PLAYER-ARGS...: plays what a camera sent in LOG into the modules; all that is on the bus goes
 # into the log RECORDED, and the map into the folder OUTPUT. Returns the exit code of what went wrong.
