@@ -21,6 +21,7 @@
 
 #include "messages/channels.hpp"
 #include "messages/interrupt.hpp"
+#include "messages/reassembly.hpp"
 
 namespace planemap::messages {
 
@@ -165,6 +166,7 @@ const std::string& checked_prefix(const std::string& prefix) {
 Bus::Bus(const std::string& url, const std::string& channel_prefix)
     : endpoint_(completed(url)), prefix_(checked_prefix(channel_prefix)) {
     if (!in_process()) session_ = random_session();
+    if (endpoint_.is_multicast()) reassemblies_failed_before_ = failed_reassemblies();
     if (!connect() && !endpoint_.is_network())
         throw std::runtime_error("LCM URL '" + this->url() + "': " + lost_reason_);
     const std::string advice = receive_buffer_advice(this->url());
@@ -247,6 +249,15 @@ std::string Bus::trouble() const {
     }
     if (unsent_ > 0)
         text += (text.empty() ? "" : "; ") + std::to_string(unsent_) + " messages could not be sent";
+    const std::int64_t incomplete =
+        reassemblies_failed_before_
+            ? failed_reassemblies().value_or(*reassemblies_failed_before_) - *reassemblies_failed_before_
+            : 0;
+    if (incomplete > 0) {
+        text += (text.empty() ? "" : "; ") + std::to_string(incomplete) +
+                " UDP packets reached this host incomplete, and what they held is lost (docs/hosts.md says "
+                "what helps)";
+    }
     return text;
 }
 

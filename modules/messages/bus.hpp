@@ -5,6 +5,7 @@
 #include <functional>
 #include <lcm/lcm-cpp.hpp>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -121,6 +122,7 @@ class Bus {
     bool broken_ = false;  ///< lcm_ is of no use any more; it goes where none of its handlers runs
     bool ended_ = false;
     std::string lost_reason_;
+    std::optional<std::int64_t> reassemblies_failed_before_;  ///< multicast only
     std::int64_t lost_us_ = 0, last_attempt_us_ = 0;
 };
 
