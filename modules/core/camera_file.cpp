@@ -149,8 +149,8 @@ class Reader {
     FieldErrors& errors_;
 };
 
-// Keys that stand for what later versions read: taken, and told that they are not used yet.
-constexpr const char *kDistortion = "distortion", *kBodyFromCamera = "body_from_camera";
+// Stands for what later versions read: taken, and told that it is not used yet.
+constexpr const char* kDistortion = "distortion";
 
 PinholeCamera read_pinhole(const Reader& reader) {
     reader.require_known({"width", "height", "fx", "fy", "cx", "cy", kDistortion});
@@ -176,10 +176,13 @@ PinholeCamera read_pinhole(const Reader& reader) {
     return camera;
 }
 
-Pose read_transform(const Reader& reader) {
+constexpr double kFarthestMount_m = 20;  // of a camera from its robot's origin
+constexpr double kFarthestCamera_m = 2;  // of one camera from the other
+
+Pose read_transform(const Reader& reader, double farthest_m) {
     reader.require_known({"rotation_vector_rad", "translation_m"});
     const auto r = reader.numbers("rotation_vector_rad", 3, {-6.2832, 6.2832, " rad"});
-    const auto t = reader.numbers("translation_m", 3, {-2, 2, " m"});
+    const auto t = reader.numbers("translation_m", 3, {-farthest_m, farthest_m, " m"});
     if (!r || !t) return Pose::Identity();
     Twist twist;
     twist << (*t)[0], (*t)[1], (*t)[2], (*r)[0], (*r)[1], (*r)[2];
@@ -236,7 +239,6 @@ std::vector<std::string> unused_keys(const Reader& reader, const CameraInfo& cam
         const Reader inner = top ? reader : reader.object(part, false);
         if (inner.has(kDistortion)) keys.push_back(top ? kDistortion : std::string(part) + "." + kDistortion);
     }
-    if (reader.has(kBodyFromCamera)) keys.push_back(kBodyFromCamera);
     if (camera.registered && reader.has("color_from_depth")) {
         keys.push_back("color_from_depth (registered is true)");
     }
@@ -246,7 +248,7 @@ std::vector<std::string> unused_keys(const Reader& reader, const CameraInfo& cam
 CameraInfo read_camera(const Reader& reader) {
     reader.require_known({"sensor", "serial", "depth_camera", "color_camera", "registered",
                           "color_from_depth", "depth_units_per_metre", "depth_range_m", "noise", "poses_of",
-                          "note", kDistortion, kBodyFromCamera});
+                          "note", "body_from_camera", kDistortion});
     CameraInfo camera;
     camera.serial = reader.text("serial", 64);
     camera.depth = read_pinhole(reader.object("depth_camera", true));
@@ -254,9 +256,12 @@ CameraInfo read_camera(const Reader& reader) {
     const bool own_color = reader.has("color_camera") || !camera.registered;
     camera.color = own_color ? read_pinhole(reader.object("color_camera", true)) : camera.depth;
     if (!camera.registered || reader.has("color_from_depth")) {
-        const Pose color_from_depth = read_transform(reader.object("color_from_depth", true));
+        const Pose color_from_depth =
+            read_transform(reader.object("color_from_depth", true), kFarthestCamera_m);
         if (!camera.registered) camera.color_from_depth = color_from_depth;
     }
+    if (reader.has("body_from_camera"))
+        camera.body_from_camera = read_transform(reader.object("body_from_camera", true), kFarthestMount_m);
     read_sensor(reader, camera);
     read_range(reader, camera);
     read_units(reader, camera);

@@ -21,9 +21,11 @@ namespace planemap {
 ///    "depth_range_m": [0.3, 8],            optional, instead of the preset's
 ///    "noise": {"base_m": 0.0012, "quadratic_per_m": 0.0019, "offset_m": 0.4},   optional, as each of its
 ///                                          keys, instead of the preset's
+///    "body_from_camera": {"rotation_vector_rad": [...], "translation_m": [...]},  optional: how the colour
+///                                          camera is mounted on the robot (x forward, y left, z up)
 ///    "serial": "K1", "note": "...", "poses_of": "color_camera"}                 optional
-/// "distortion" (also within a camera) and "body_from_camera" are known, but not used yet: a note says so, as
-/// of anything else that stands there in vain. Throws std::runtime_error if the file cannot be read, and
+/// "distortion" (also within a camera) is known, but not used yet: a note says so, as of anything else that
+/// stands there in vain. Throws std::runtime_error if the file cannot be read, and
 /// std::invalid_argument that names the file and every bad field at once: value and what is allowed; unknown
 /// keys with the nearest known one; syntax errors with line and column.
 CameraInfo read_camera_file(const std::filesystem::path& file, std::vector<std::string>* notes = nullptr);

@@ -32,6 +32,9 @@ struct OdometryEstimate {
     int features = 0;                        ///< features or terms tried
     int inliers = 0;
     double residual_px = 0;  ///< RMS reprojection error of the inliers
+    /// How the camera moves, filtered: of its centre, m/s, and its rotation, rad/s, both in the camera frame.
+    /// Zero while it is not known: at the first pose and after lost frames. Not in the message.
+    Twist velocity = Twist::Zero();
 };
 
 /// A 256-bit binary descriptor; compared by Hamming distance.

@@ -263,13 +263,31 @@ OdometryEstimate from_message(const odometry_t& message) {
     return estimate;
 }
 
-bot_core::pose_t to_pose_message(const OdometryEstimate& estimate) {
+bot_core::pose_t to_message(const BodyMotion& motion, std::int64_t utime) {
     bot_core::pose_t message{};
-    message.utime = estimate.pose_utime;
-    const transform_t pose = to_message(estimate.odom_from_camera);
+    message.utime = utime;
+    const transform_t pose = to_message(motion.local_from_body);
     std::copy(pose.translation, pose.translation + 3, message.pos);
     std::copy(pose.rotation, pose.rotation + 4, message.orientation);
+    std::copy(motion.velocity_local.data(), motion.velocity_local.data() + 3, message.vel);
+    std::copy(motion.rotation_rate_body.data(), motion.rotation_rate_body.data() + 3, message.rotation_rate);
     return message;
+}
+
+bot_core::rigid_transform_t to_rigid_transform(const Pose& pose, std::int64_t utime) {
+    bot_core::rigid_transform_t message{};
+    message.utime = utime;
+    const transform_t transform = to_message(pose);
+    std::copy(transform.translation, transform.translation + 3, message.trans);
+    std::copy(transform.rotation, transform.rotation + 4, message.quat);
+    return message;
+}
+
+Pose from_message(const bot_core::rigid_transform_t& message) {
+    transform_t transform;
+    std::copy(message.trans, message.trans + 3, transform.translation);
+    std::copy(message.quat, message.quat + 4, transform.rotation);
+    return from_message(transform, "rigid_transform");
 }
 
 keyframe_t to_message(const Keyframe& keyframe, std::int32_t seq, std::int64_t session) {

@@ -5,6 +5,7 @@
 
 #include <bot_core/images_t.hpp>
 #include <bot_core/pose_t.hpp>
+#include <bot_core/rigid_transform_t.hpp>
 #include <planemap/camera_info_t.hpp>
 #include <planemap/keyframe_t.hpp>
 #include <planemap/odometry_t.hpp>
@@ -14,6 +15,7 @@
 #include <span>
 #include <vector>
 
+#include "core/body_motion.hpp"
 #include "core/camera.hpp"
 #include "core/image.hpp"
 #include "core/keyframe.hpp"
@@ -41,7 +43,9 @@ FrameRegions from_message(const planar_regions_t& message);
 odometry_t to_message(const OdometryEstimate& estimate, std::int32_t seq, std::int64_t session = 0);
 OdometryEstimate from_message(const odometry_t& message);
 /// For viewers and robots that know bot_core only.
-bot_core::pose_t to_pose_message(const OdometryEstimate& estimate);
+bot_core::pose_t to_message(const BodyMotion& motion, std::int64_t utime);
+bot_core::rigid_transform_t to_rigid_transform(const Pose& pose, std::int64_t utime);
+Pose from_message(const bot_core::rigid_transform_t& message);
 
 keyframe_t to_message(const Keyframe& keyframe, std::int32_t seq, std::int64_t session = 0);
 Keyframe from_message(const keyframe_t& message);

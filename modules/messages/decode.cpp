@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bot_core/images_t.hpp>
 #include <bot_core/pose_t.hpp>
+#include <bot_core/rigid_transform_t.hpp>
 #include <exception>
 #include <kinect/frame_msg_t.hpp>
 #include <limits>
@@ -105,6 +106,9 @@ void walk(Walker& w, const bot_core::images_t*) {
     w.array(count, 2, "image_types");
     w.bound(count, 32, "images");
     for (std::int32_t i = 0; i < count; ++i) walk_image(w);
+}
+void walk(Walker& w, const bot_core::rigid_transform_t*) {
+    w.skip(8 + kTransform, "rigid_transform");
 }
 void walk(Walker& w, const bot_core::pose_t*) {
     w.skip(8 + 8 * 16, "pose");
@@ -276,6 +280,7 @@ T decode(std::span<const std::uint8_t> bytes) {
 
 PLANEMAP_DECODES(bot_core::images_t)
 PLANEMAP_DECODES(bot_core::pose_t)
+PLANEMAP_DECODES(bot_core::rigid_transform_t)
 PLANEMAP_DECODES(kinect::frame_msg_t)
 PLANEMAP_DECODES(camera_info_t)
 PLANEMAP_DECODES(planar_regions_t)

@@ -13,6 +13,7 @@
 namespace bot_core {
 class images_t;
 class pose_t;
+class rigid_transform_t;
 }  // namespace bot_core
 namespace kinect {
 class frame_msg_t;

@@ -106,6 +106,7 @@ OdometryResult Odometry::State::follow(PreparedFrame& frame, Located& located) {
     estimate.features = located.track.tried;
     estimate.inliers = located.track.inliers;
     estimate.residual_px = located.track.alignment.residual_px;
+    estimate.velocity = -motion_.velocity();  // of the camera in the world, not of the world in its frame
     if (located.relocalised || has_moved(options_, located) ||
         method_->wants_keyframe(frame, located, keyframes_.current()))
         result.keyframe = change_keyframe(frame, located);

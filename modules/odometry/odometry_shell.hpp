@@ -8,11 +8,14 @@
 #include "messages/convert.hpp"
 #include "messages/frame_decoder.hpp"
 #include "messages/process.hpp"
+#include "odometry/body_frame.hpp"
 #include "odometry/odometry.hpp"
 
 namespace planemap::odometry {
 
 /// OPENNI_FRAME and PLANEMAP_REGIONS of the same utime to PLANEMAP_ODOMETRY, POSE_BODY and PLANEMAP_KEYFRAME.
+/// POSE_BODY begins when it is known how the body lies (BodyFrame): by camera.json, else by the up of
+/// PLANEMAP_MAP, which is asked until then.
 /// A frame waits for its regions until a later one's come, kMaxWaiting frames wait, or it has waited for
 /// kMaxWait; then it goes on without. After kMaxMissing of these in a row (no segmentation on the bus) frames
 /// do not wait, until regions come again.
@@ -45,6 +48,9 @@ class OdometryShell : public messages::Shell {
     };
     void on_frame(std::shared_ptr<const messages::Frame> frame);
     void on_regions(const messages::RawMessage& message);
+    void on_trajectory(const messages::RawMessage& message);
+    void on_map(const messages::RawMessage& message);
+    void publish_body(const OdometryEstimate& estimate, const CameraInfo& camera);
     void process_ready(std::size_t max_waiting);
     void process_front();
     void process(const Waiting& input);
@@ -55,10 +61,20 @@ class OdometryShell : public messages::Shell {
     messages::ModuleStatus status_{"odometry"};
     std::deque<Waiting> waiting_;
     std::deque<messages::FrameRegions>
-        early_regions_;                          ///< of frames that have not come yet; at most kMaxWaiting
-    std::optional<std::int64_t> handled_utime_;  ///< of the last frame that was handled
-    int missing_ = 0;                            ///< frames in a row that waited in vain
-    bool heard_ = false;                         ///< a message came since the last poll()
+        early_regions_;  ///< of frames that have not come yet; at most kMaxWaiting
+    /// The first that was published, by which a trajectory tells the world's frame from ours.
+    struct FirstKeyframe {
+        int id;
+        std::int64_t utime;
+        Pose odom_from_camera;
+    };
+    BodyFrame body_;
+    std::optional<FirstKeyframe> first_keyframe_;
+    std::optional<Pose> odom_from_world_;
+    std::optional<std::int64_t> frames_told_utime_;  ///< frame with which the body's frames were told last
+    std::optional<std::int64_t> handled_utime_;      ///< of the last frame that was handled
+    int missing_ = 0;                                ///< frames in a row that waited in vain
+    bool heard_ = false;                             ///< a message came since the last poll()
     std::int32_t odometry_seq_ = 0, keyframe_seq_ = 0;
 };
 

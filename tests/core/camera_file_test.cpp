@@ -221,19 +221,40 @@ TEST(CameraFile, AnUnknownPresetListsAllAndTheNearest) {
     EXPECT_THAT(test::error_of([] { read(with(R"("sensor": 1)")); }), HasSubstr("sensor is 1"));
 }
 
+TEST(CameraFile, SaysHowTheCameraIsMounted) {
+    EXPECT_FALSE(read(with("\"note\": \"none\"")).body_from_camera);
+    const CameraInfo camera = read(with(
+        R"("body_from_camera": {"rotation_vector_rad": [-1.2092, 1.2092, -1.2092], "translation_m": [0.3, 0, 1]})"));
+    ASSERT_TRUE(camera.body_from_camera);
+    const Eigen::Vector3d ahead = *camera.body_from_camera * Eigen::Vector3d(0, 0, 2);
+    EXPECT_NEAR((ahead - Eigen::Vector3d(2.3, 0, 1)).norm(), 0, 1e-4);
+    EXPECT_THAT(test::error_of([] { read(with(R"("body_from_camera": {})")); }),
+                AllOf(HasSubstr("camera.json: body_from_camera.rotation_vector_rad is missing"),
+                      HasSubstr("body_from_camera.translation_m is missing")));
+    EXPECT_THAT(test::error_of([] { read(with(R"("body_from_camera": true)")); }),
+                HasSubstr("body_from_camera is true, must be an object"));
+    EXPECT_THAT(
+        test::error_of([] {
+            read(with(
+                R"("body_from_camera": {"rotation_vector_rad": [0, 0, 0], "translation_m": [0, 0, 300]})"));
+        }),
+        HasSubstr(
+            "body_from_camera.translation_m is [0,0,300], must be a list of 3, each a number from -20"));
+}
+
 TEST(CameraFile, WhatIsKnownButNotUsedIsNoted) {
     const test::TemporaryFolder folder;
     std::vector<std::string> notes;
     const auto file = folder.write("camera.json", with(R"("note": "hello", "poses_of": "color_camera")"));
     read_camera_file(file, &notes);
     EXPECT_TRUE(notes.empty());
-    folder.write("camera.json", with(R"("distortion": [0.1], "body_from_camera": {}, "registered": true,
+    folder.write("camera.json", with(R"("distortion": [0.1], "registered": true,
         "color_camera": {"width": 640, "height": 480, "fx": 585, "fy": 580, "cx": 320, "cy": 240, "distortion": []},
         "color_from_depth": {"rotation_vector_rad": [0, 0, 0], "translation_m": [0, 0, 0]})"));
     read_camera_file(file, &notes);
     ASSERT_EQ(notes.size(), 1u);
     EXPECT_THAT(notes[0], HasSubstr("camera.json: known, but not used: distortion, color_camera.distortion, "
-                                    "body_from_camera, color_from_depth (registered is true)"));
+                                    "color_from_depth (registered is true)"));
     EXPECT_NO_THROW(read_camera_file(file));
 }
 

@@ -41,6 +41,45 @@ TEST_F(OdometryShellTest, TracksAmongCorruptMessages) {
     EXPECT_EQ(shell.status().decode_error_count(), 20 * kCorrupt);
 }
 
+TEST_F(OdometryShellTest, TellsTheBodysPoseWhenItKnowsHowTheBodyLies) {
+    OdometryShell shell(bus_, std::make_shared<messages::FrameDecoder>(bus_), {});
+    const auto bodies = collect<bot_core::pose_t>(messages::channels::kPose);
+    const auto mounts = collect<bot_core::rigid_transform_t>(messages::channels::kBodyFromCamera);
+    const auto keyframes = collect<keyframe_t>(messages::channels::kKeyframe);
+    publish_camera();
+    for (int i = 0; i < 10; ++i) {
+        const std::int64_t utime = 1000000 + 33333 * i;
+        bus_.publish(messages::channels::kFrame, frame(utime, 0.02 * i));
+        publish_regions(utime);
+        bus_.drain();
+        if (i != 4) continue;
+        EXPECT_TRUE(bodies->empty());
+        EXPECT_NE(shell.status().line().find("POSE_BODY waits for up"), std::string::npos);
+        // Of another session: it does not hold our first keyframe.
+        KeyframeTrajectory trajectory;
+        trajectory.keyframes = {{0, 77, Pose::Identity()}};
+        PlaneMap map;
+        map.up = {0, 0, 1};
+        bus_.publish(messages::channels::kTrajectory, messages::to_message(trajectory, 0));
+        bus_.publish(messages::channels::kMap, messages::to_message(map, 0));
+        bus_.drain();
+        // The world's z is up, and the camera looks along its x.
+        trajectory.keyframes = {{keyframes->front().id, keyframes->front().utime, Pose::Identity()}};
+        trajectory.keyframes.front().world_from_camera.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+        bus_.publish(messages::channels::kTrajectory, messages::to_message(trajectory, 1));
+        bus_.publish(messages::channels::kMap, messages::to_message(map, 1));
+        bus_.drain();
+    }
+    ASSERT_EQ(bodies->size(), 5u);
+    ASSERT_EQ(mounts->size(), 1u) << "once a second";
+    // The camera moves to its right by 0.02 m a frame: to the body's -y, 0.6 m/s.
+    EXPECT_NEAR(bodies->back().pos[1], -0.18, 0.02);
+    EXPECT_NEAR(bodies->back().pos[0], 0, 0.02);
+    EXPECT_NEAR(bodies->back().vel[1], -0.6, 0.1);
+    EXPECT_NEAR(bodies->back().orientation[0], 1, 1e-3);
+    EXPECT_NEAR(bodies->back().rotation_rate[2], 0, 0.05);
+}
+
 TEST_F(OdometryShellTest, SaysThatTheSensorStartedAgainAndWhatItsPosesAreThen) {
     OdometryShell shell(bus_, std::make_shared<messages::FrameDecoder>(bus_), {});
     const auto keyframes = collect<keyframe_t>(messages::channels::kKeyframe);
