@@ -81,7 +81,7 @@ class Scene {
         accessors[static_cast<std::size_t>(first_accessor)]["min"] = json_of(low);
         accessors[static_cast<std::size_t>(first_accessor)]["max"] = json_of(high);
 
-        materials.push_back(material("plane_" + std::to_string(plane.id), plane_color(plane.id)));
+        materials.push_back(material("plane_" + std::to_string(plane.id), id_color(plane.id)));
         const Json attributes = {{"POSITION", first_accessor}, {"NORMAL", first_accessor + 1}};
         const Json primitive = {
             {"attributes", attributes}, {"indices", first_accessor + 2}, {"material", index}};

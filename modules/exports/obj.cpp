@@ -50,7 +50,7 @@ std::string planes_obj(const PlaneMap& map, const Trajectory& trajectory, const 
 std::string planes_mtl(const PlaneMap& map) {
     std::string text = "# planemap: a colour a plane\n";
     for (const MapPlane* plane : drawable_planes(map)) {
-        const Rgb color = plane_color(plane->id);
+        const Rgb color = id_color(plane->id);
         text += "newmtl plane_" + std::to_string(plane->id) + "\n";
         text += diffuse(color);
     }

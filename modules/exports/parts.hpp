@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/id_color.hpp"
 #include "core/image.hpp"
 #include "core/plane_map.hpp"
 #include "core/trajectory.hpp"
@@ -15,9 +16,6 @@ namespace planemap::exports {
 
 /// A number with a fixed number of decimals, a point whatever the locale, and no negative zero.
 std::string fixed(double value, int decimals);
-
-/// A colour that tells plane ids apart; the same in all exports.
-Rgb plane_color(int id);
 
 /// "plane_3_wall".
 std::string plane_name(const MapPlane& plane);

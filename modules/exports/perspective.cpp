@@ -198,7 +198,7 @@ std::vector<Drawn> drawn_planes(const std::vector<const MapPlane*>& planes, cons
 
 template <typename Project>
 std::string shaded_plane(const Drawn& drawn, const Eigen::Vector3d& light, const Project& project) {
-    const Rgb color = plane_color(drawn.plane->id);
+    const Rgb color = id_color(drawn.plane->id);
     const double shade = 0.72 + 0.33 * std::abs(light.dot(drawn.plane->normal.cast<double>()));
     return "<path d=\"" + path(drawn.rings, project) + "\" fill-rule=\"evenodd\" fill=\"" +
            css(color, shade) + "\" stroke=\"" + css(color, 0.6) +

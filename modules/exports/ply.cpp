@@ -71,7 +71,7 @@ std::string planes_ply(const PlaneMap& map, const Trajectory& trajectory) {
         int first = 0;
         for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
             const int index =
-                ply.vertex(level * mesh.vertices[i].cast<double>(), normal, plane_color(plane->id));
+                ply.vertex(level * mesh.vertices[i].cast<double>(), normal, id_color(plane->id));
             if (i == 0) first = index;
         }
         for (const auto& [a, b, c] : mesh.triangles) ply.face(first + a, first + b, first + c);

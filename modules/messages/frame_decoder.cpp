@@ -142,6 +142,13 @@ const GrayImage* Frame::gray() const {
     return &*gray_;
 }
 
+std::optional<RgbImage> Frame::color(int reduction) const {
+    if (color_ == nullptr) return std::nullopt;
+    return color_->pixelformat == image_t::PIXEL_FORMAT_MJPEG
+               ? decode_jpeg_colors(color_->data, color_->width, color_->height, reduction)
+               : color_pixels(*color_, reduction);
+}
+
 namespace {
 
 using Verdict = SenderGuard::Verdict;

@@ -43,6 +43,9 @@ class Frame {
     const DepthImage& depth() const;           ///< depth camera's pixels, raw units
     const DepthImage& depth_in_color() const;  ///< registered to the colour camera's pixels, raw units
     const GrayImage* gray() const;             ///< luma; nullptr without colour
+    /// A small picture of the colours, one pixel for `reduction` x `reduction` (1, 2, 4 or 8); not kept.
+    /// Nothing without colour.
+    std::optional<RgbImage> color(int reduction) const;
 
   private:
     friend class FrameDecoder;

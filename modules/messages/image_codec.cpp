@@ -39,8 +39,10 @@ Turbo& decompressor() {
     throw MessageError("JPEG: " + reason);
 }
 
+/// Pixels of the type in one of libjpeg-turbo's formats, one for `reduction` x `reduction`.
 template <typename Pixel>
-Image<Pixel> decode_jpeg(std::span<const std::uint8_t> jpeg, int width, int height, int format) {
+Image<Pixel> decode_jpeg(std::span<const std::uint8_t> jpeg, int width, int height, int format,
+                         int reduction = 1) {
     Turbo& handle = decompressor();
     int w = 0, h = 0, subsampling = 0, colorspace = 0;
     if (tjDecompressHeader3(handle.get(), jpeg.data(), jpeg.size(), &w, &h, &subsampling, &colorspace) != 0) {
@@ -50,13 +52,13 @@ Image<Pixel> decode_jpeg(std::span<const std::uint8_t> jpeg, int width, int heig
         throw MessageError("JPEG: the image is " + std::to_string(w) + "x" + std::to_string(h) +
                            ", expected " + std::to_string(width) + "x" + std::to_string(height));
     }
-    // Accurate transforms, so that luma is the same whatever decodes it; a warning (cut short, corrupt) is an
-    // error.
+    // Accurate transforms, so that pixels are the same whatever decodes them; a warning (cut short, corrupt)
+    // is an error.
     const int flags = TJFLAG_ACCURATEDCT | TJFLAG_STOPONWARNING;
-    Image<Pixel> image(width, height);
+    Image<Pixel> image((width + reduction - 1) / reduction, (height + reduction - 1) / reduction);
     if (tjDecompress2(handle.get(), jpeg.data(), jpeg.size(),
-                      reinterpret_cast<unsigned char*>(image.pixels.data()), 0, 0, height, format,
-                      flags) != 0) {
+                      reinterpret_cast<unsigned char*>(image.pixels.data()), image.width, 0, image.height,
+                      format, flags) != 0) {
         fail(handle);
     }
     return image;
@@ -68,9 +70,9 @@ GrayImage decode_jpeg_luma(std::span<const std::uint8_t> jpeg, int width, int he
     return decode_jpeg<std::uint8_t>(jpeg, width, height, TJPF_GRAY);
 }
 
-RgbImage decode_jpeg_colors(std::span<const std::uint8_t> jpeg, int width, int height) {
+RgbImage decode_jpeg_colors(std::span<const std::uint8_t> jpeg, int width, int height, int reduction) {
     static_assert(sizeof(Rgb) == 3);
-    return decode_jpeg<Rgb>(jpeg, width, height, TJPF_RGB);
+    return decode_jpeg<Rgb>(jpeg, width, height, TJPF_RGB, reduction);
 }
 
 std::vector<std::uint8_t> encode_jpeg(const RgbImage& image, int quality) {

@@ -15,8 +15,9 @@ namespace planemap::messages {
 
 /// Luma of a JPEG, which costs a fraction of its colours.
 GrayImage decode_jpeg_luma(std::span<const std::uint8_t> jpeg, int width, int height);
-/// All of its colours.
-RgbImage decode_jpeg_colors(std::span<const std::uint8_t> jpeg, int width, int height);
+/// All of its colours, or one pixel for `reduction` x `reduction` (1, 2, 4 or 8; sizes are rounded up): the
+/// more it is reduced the less it costs.
+RgbImage decode_jpeg_colors(std::span<const std::uint8_t> jpeg, int width, int height, int reduction = 1);
 /// quality: 1 to 100.
 std::vector<std::uint8_t> encode_jpeg(const RgbImage& image, int quality);
 

@@ -167,14 +167,15 @@ GrayImage luma_pixels(const image_t& image) {
     return out;
 }
 
-RgbImage color_pixels(const image_t& image) {
+RgbImage color_pixels(const image_t& image, int reduction) {
     require_color_format(image);
     if (image.pixelformat == image_t::PIXEL_FORMAT_MJPEG)
         throw MessageError("colour image: a JPEG, no pixels");
     const std::size_t stride = checked_color_stride(image);
-    RgbImage out(image.width, image.height);
+    RgbImage out((image.width + reduction - 1) / reduction, (image.height + reduction - 1) / reduction);
     for_each_row(image, stride, [&](int v, const RgbImage& row) {
-        std::copy(row.pixels.begin(), row.pixels.end(), out.row(v));
+        if (v % reduction != 0) return;
+        for (int u = 0; u < out.width; ++u) out(u, v / reduction) = row(u * reduction, 0);
     });
     return out;
 }

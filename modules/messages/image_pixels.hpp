@@ -37,7 +37,8 @@ DepthImage depth_pixels(const bot_core::image_t& image, bool zipped);
 void require_color_format(const bot_core::image_t& image);
 /// Luma of a colour image of one of these formats. Throws MessageError for bytes that do not hold its size.
 GrayImage luma_pixels(const bot_core::image_t& image);
-/// Colours of a GRAY, RGB or BGR image. Throws as luma_pixels().
-RgbImage color_pixels(const bot_core::image_t& image);
+/// Colours of a GRAY, RGB or BGR image, of every `reduction`-th pixel (sizes are rounded up). Throws as
+/// luma_pixels().
+RgbImage color_pixels(const bot_core::image_t& image, int reduction = 1);
 
 }  // namespace planemap::messages

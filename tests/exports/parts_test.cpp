@@ -108,7 +108,7 @@ TEST(Footprint, JoinsWhatIsAboveOneAnotherAndKeepsGaps) {
 
 TEST(PlaneColor, TellsNeighbouringIdsApart) {
     for (int id = -2; id < 100; ++id) {
-        const Rgb a = plane_color(id), b = plane_color(id + 1);
+        const Rgb a = id_color(id), b = id_color(id + 1);
         EXPECT_GT(std::abs(a.r - b.r) + std::abs(a.g - b.g) + std::abs(a.b - b.b), 60) << id;
     }
 }

@@ -13,7 +13,7 @@ fail() {
 }
 
 cmake --install "$build" --prefix "$work/prefix" >"$work/install.log" || fail "cmake --install: $(tail -n 3 "$work/install.log")"
-for file in bin/planemap-run bin/planemap-launch bin/planemap-spy share/planemap/lcmtypes/planemap_plane_map_t.lcm \
+for file in bin/planemap-run bin/planemap-launch bin/planemap-spy bin/planemap-viewer bin/planemap-export share/java/planemap_spy.jar share/planemap/lcmtypes/planemap_plane_map_t.lcm \
     include/planemap/lcmtypes/planemap/plane_map_t.hpp include/planemap/map/queries.hpp; do
     [[ -e "$work/prefix/$file" ]] || fail "$file is not installed"
 done
