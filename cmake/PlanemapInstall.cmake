@@ -43,6 +43,6 @@ set(CPACK_COMPONENT_RUNTIME_DESCRIPTION
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME planemap-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "liblcm-dev, libeigen3-dev, libspdlog-dev, libcli11-dev, nlohmann-json3-dev, libpcl-dev, \
-libopencv-dev, libceres-dev, liboctomap-dev, libturbojpeg0-dev, libdeflate-dev, libspng-dev")
+libopencv-dev, libceres-dev, liboctomap-dev, libturbojpeg0-dev, libdeflate-dev, libspng-dev, libopenni2-dev, libfreenect-dev")
 set(CPACK_COMPONENT_DEV_DESCRIPTION "Libraries, headers, LCM types and the CMake package of planemap, and examples.")
 include(CPack)

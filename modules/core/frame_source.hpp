@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -25,15 +26,19 @@ struct SensorFrame {
 /// What FrameSource::next() did.
 struct ReadResult {
     enum class Status {
-        kFrame,   ///< a frame; with a message if not all is well with it
-        kBroken,  ///< a frame that cannot be used, to be counted and skipped; the message says why
-        kEnd,     ///< no more frames, and nothing more will come
+        kFrame,    ///< a frame; with a message if not all is well with it
+        kBroken,   ///< a frame that cannot be used, to be counted and skipped; the message says why
+        kNothing,  ///< a live camera has no frame yet, to be asked again; the message says what keeps it from
+                   ///< having one (unplugged), or nothing
+        kEnd,      ///< no more frames, and nothing more will come
     };
     Status status = Status::kEnd;
     std::string message;   ///< one line: file and reason; empty when all is well
     std::string reason{};  ///< the reason alone, alike for all files with the same fault; empty: the message
     bool color_left_out = false;  ///< of a frame: its colour could not be used and is not in it
-    bool end_missing = false;     ///< of a frame: a file of it is cut short, but behind its last pixel
+    /// What a live camera lost since its last result, by its reason: plural, without figures.
+    std::map<std::string, std::int64_t> lost{};
+    bool end_missing = false;  ///< of a frame: a file of it is cut short, but behind its last pixel
 };
 
 /// A finite or endless sequence of frames from one sensor.
@@ -48,6 +53,8 @@ class FrameSource {
     /// Reads the next frame. On kFrame `frame` is whole: the depth has the camera's size. Otherwise it is
     /// empty.
     virtual ReadResult next(SensorFrame& frame) = 0;
+    /// True if frames come at a camera's own pace, and for ever: whoever waits for one need not pace itself.
+    virtual bool is_live() const { return false; }
     /// A line each of what the user should know about the source before its first frame.
     virtual std::vector<std::string> notes() const { return {}; }
     /// A line each of what the user should know at the end: what of the source was damaged or not read.

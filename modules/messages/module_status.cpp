@@ -81,6 +81,7 @@ std::vector<std::string> ModuleStatus::remarks() const {
 std::string ModuleStatus::full_text() const {
     std::string text = text_;
     const auto add = [&](const std::string& more) { text += (text.empty() ? "" : "; ") + more; };
+    if (!failing_.empty()) add(failing_);
     if (!bus_trouble_.empty()) add(bus_trouble_);
     for (const std::string& remark : remarks()) add(remark);
     for (const auto& [what, count] : losses_) add("lost " + std::to_string(count) + " " + what);
@@ -92,6 +93,7 @@ std::string ModuleStatus::full_text() const {
 std::int8_t ModuleStatus::state(std::int64_t now_us) const {
     const std::int64_t inputs = received_ - window_received_, outputs = published_ - window_published_;
     const std::int64_t unusable = dropped_ + decode_errors_ - window_unusable_;
+    if (!failing_.empty()) return module_status_t::FAILING;
     if (!is_connected_) return module_status_t::FAILING;  // the bus's trouble says why
     if (came_ == 0 && received_ == 0 && published_ == 0) return module_status_t::WAITING;
     if (inputs > 0 && outputs > 0) return module_status_t::RUNNING;

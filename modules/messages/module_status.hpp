@@ -45,6 +45,8 @@ class ModuleStatus {
     void count_loss(const std::string& what, std::int64_t count = 1);
     /// What keeps the module from working, or what it found; shown in the status line.
     void set_text(std::string text) { text_ = std::move(text); }
+    /// What keeps the module from working at all: the status is failing until it is empty again.
+    void set_failing(std::string why) { failing_ = std::move(why); }
     /// What is true of all that the module says from now on, e.g. that the sensor started again; shown in the
     /// status after the text, and told by planemap-run's report. A later remark of the same kind (a word, not
     /// shown) takes the place of the earlier one; an empty one takes it back. Warned of the first time, and
@@ -97,7 +99,7 @@ class ModuleStatus {
     std::int8_t state(std::int64_t now_us) const;
     std::string full_text() const;
 
-    std::string module_, channel_, text_, bus_trouble_;
+    std::string module_, channel_, text_, failing_, bus_trouble_;
     std::int64_t came_ = 0, received_ = 0, published_ = 0, dropped_ = 0, decode_errors_ = 0;
     std::map<std::string, std::int64_t> losses_;
     std::map<std::string, Remark> remarks_;  ///< by kind

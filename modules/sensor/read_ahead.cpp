@@ -15,7 +15,7 @@ struct ReadAhead::State {
 
     void read_all();
 
-    const std::shared_ptr<FrameSource> source;  // used by the thread alone
+    std::shared_ptr<FrameSource> source;  // used by the thread alone
     std::mutex mutex;
     std::condition_variable changed;
     std::optional<Item> item;  // read and not taken
@@ -42,6 +42,7 @@ void ReadAhead::State::read_all() {
         } else if (!stop) {
             item = std::move(next);
         }
+        if (!more) source.reset();  // who waits for the end of reading may count on being its last owner
         done = !more;
         changed.notify_all();
     }

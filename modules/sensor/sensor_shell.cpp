@@ -40,7 +40,27 @@ void SensorShell::complain(const std::string& what, const ReadResult& result) {
     bus_.complaints().add(result.message, what + (result.reason.empty() ? result.message : result.reason));
 }
 
+/// Said when it begins and when it is over; meanwhile the status shows it.
+void SensorShell::show_trouble(const ReadResult& result) {
+    const std::string trouble =
+        result.status == ReadResult::Status::kNothing ? result.message : std::string();
+    if (trouble.empty() && result.status != ReadResult::Status::kFrame) return;
+    if (trouble == trouble_) return;
+    if (trouble.empty())
+        spdlog::warn("frames come again");
+    else
+        spdlog::warn("{}", trouble);
+    trouble_ = trouble;
+    status_.set_failing(trouble);
+}
+
 void SensorShell::count(const ReadResult& result) {
+    for (const auto& [what, count] : result.lost) {
+        status_.lost(what, count);
+        camera_losses_[what] += count;
+    }
+    show_trouble(result);
+    if (result.status == ReadResult::Status::kNothing) return;
     status_.received();
     if (result.status == ReadResult::Status::kBroken) {
         ++broken_;
@@ -104,7 +124,9 @@ int SensorShell::poll() {
         }
     }
     std::int64_t due_us = start_wall_us_;
-    if (options_.rate_hz > 0) {
+    if (source_->is_live()) {
+        due_us = 0;  // it has waited for its frame already
+    } else if (options_.rate_hz > 0) {
         due_us += std::llround(static_cast<double>(frames_ - start_frame_) / options_.rate_hz * 1e6);
     } else if (options_.speed > 0) {
         due_us += std::llround(static_cast<double>(frame_.utime - start_utime_) / options_.speed);

@@ -50,6 +50,9 @@ class SensorShell : public messages::Shell {
         return ends_missing_;
     }  ///< published, though a file of them is cut short behind its last pixel
 
+    /// What a live camera lost, by its reason.
+    const std::map<std::string, std::int64_t>& camera_losses() const { return camera_losses_; }
+
   private:
     enum class Read { kFrame, kNothing, kEnd };
 
@@ -60,6 +63,7 @@ class SensorShell : public messages::Shell {
     bool next(ReadResult& result);
     bool jumps() const;
     void count(const ReadResult& result);
+    void show_trouble(const ReadResult& result);
     void complain(const std::string& what, const ReadResult& result);
 
     messages::Bus& bus_;
@@ -76,6 +80,8 @@ class SensorShell : public messages::Shell {
     std::int64_t last_camera_utime_ = 0, last_camera_wall_us_ = 0;
     std::int64_t disconnected_us_ = 0;  ///< since when the bus has no connection; 0: it has
     std::int32_t camera_seq_ = 0;
+    std::map<std::string, std::int64_t> camera_losses_;
+    std::string trouble_;      ///< of a live camera, now
     std::string first_fault_;  ///< of a frame that could not be used
 };
 

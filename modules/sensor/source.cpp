@@ -2,11 +2,13 @@
 #include "sensor/source.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <iterator>
 #include <stdexcept>
 
+#include "camera/cameras.hpp"
 #include "core/validation.hpp"
 #include "sensor/dataset.hpp"
 #include "sensor/log_source.hpp"
@@ -43,17 +45,93 @@ Source open_folder(const std::string& input, const SourceOptions& options) {
     return std::make_unique<Dataset>(input, options);
 }
 
+[[noreturn]] void refuse_duration(const std::string& input) {
+    throw std::invalid_argument("--duration is for a live camera; " + input + " is none");
+}
+
+/// A part of a source that can only be read in order.
+class SelectedFrames : public FrameSource {
+  public:
+    SelectedFrames(std::unique_ptr<FrameSource> source, const FrameRange& range)
+        : source_(std::move(source)), range_(range) {
+        if (const auto size = source_->size()) frames_within(range_, *size);  // throws if there are none
+    }
+
+    const CameraInfo& camera() const override { return source_->camera(); }
+    std::optional<std::size_t> size() const override {
+        const auto size = source_->size();
+        if (!size) return std::nullopt;
+        const auto [from, to] = frames_within(range_, *size);
+        return to - from;
+    }
+    bool is_live() const override { return source_->is_live(); }
+    std::vector<std::string> notes() const override { return source_->notes(); }
+    ReadResult next(SensorFrame& frame) override {
+        for (;;) {
+            if (range_.to && next_ >= *range_.to) {
+                frame = {};
+                return {.status = ReadResult::Status::kEnd, .message = {}};
+            }
+            ReadResult result = source_->next(frame);
+            using Status = ReadResult::Status;
+            if (result.status == Status::kEnd || result.status == Status::kNothing) return result;
+            if (next_++ >= range_.from) return result;
+        }
+    }
+
+  private:
+    std::unique_ptr<FrameSource> source_;
+    FrameRange range_;
+    std::size_t next_ = 0;  ///< number of the next frame
+};
+
+/// A live camera for a while.
+class TimedFrames : public FrameSource {
+  public:
+    TimedFrames(std::unique_ptr<FrameSource> source, double duration_s)
+        : source_(std::move(source)),
+          end_(Clock::now() +
+               std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(duration_s))) {}
+
+    const CameraInfo& camera() const override { return source_->camera(); }
+    std::optional<std::size_t> size() const override { return std::nullopt; }
+    bool is_live() const override { return true; }
+    std::vector<std::string> notes() const override { return source_->notes(); }
+    ReadResult next(SensorFrame& frame) override {
+        if (Clock::now() < end_) return source_->next(frame);
+        frame = {};
+        return {.status = ReadResult::Status::kEnd, .message = {}};
+    }
+
+  private:
+    using Clock = std::chrono::steady_clock;
+
+    std::unique_ptr<FrameSource> source_;
+    Clock::time_point end_;
+};
+
+Source open_camera(const std::string& input, const SourceOptions& options) {
+    camera::CameraRequest request = options.device;
+    request.described = options.camera;
+    Source source = camera::open_camera(input, request);
+    if (options.duration_s > 0 && !source->is_live()) refuse_duration(input);
+    if (options.duration_s > 0) source = std::make_unique<TimedFrames>(std::move(source), options.duration_s);
+    if (!options.frames.is_all())
+        source = std::make_unique<SelectedFrames>(std::move(source), options.frames);
+    return source;
+}
+
 /// One row a kind of input. The first that `is` so is opened; the last takes what is left.
 struct Opener {
     InputKind kind;
-    bool has_channels;  ///< SourceOptions::channel is for it
     bool (*is)(const std::string& input);
     Source (*open)(const std::string& input, const SourceOptions& options);
 };
 constexpr Opener kOpeners[] = {
-    {InputKind::kSimulator, false, is_simulator, open_simulator},
-    {InputKind::kLog, true, is_file, open_log},
-    {InputKind::kFolder, false, [](const std::string&) { return true; }, open_folder},
+    {InputKind::kCamera, camera::is_camera, open_camera},
+    {InputKind::kSimulator, is_simulator, open_simulator},
+    {InputKind::kLog, is_file, open_log},
+    {InputKind::kFolder, [](const std::string&) { return true; }, open_folder},
 };
 
 const Opener& opener_of(const std::string& input) {
@@ -67,6 +145,8 @@ void SourceOptions::validate() const {
     FieldErrors errors("source options");
     errors.require(std::isfinite(max_color_gap_s) && max_color_gap_s >= 0, "max_color_gap_s", max_color_gap_s,
                    "finite and at least 0");
+    errors.require(std::isfinite(duration_s) && duration_s >= 0, "duration", duration_s,
+                   "finite and at least 0");
     errors.throw_if_any();
 }
 
@@ -77,8 +157,15 @@ InputKind kind_of_input(const std::string& input) {
 std::unique_ptr<FrameSource> open_source(const std::string& input, const SourceOptions& options) {
     options.validate();
     const Opener& opener = opener_of(input);
-    if (!options.channel.empty() && !opener.has_channels)
+    if (!options.channel.empty() && opener.kind != InputKind::kLog)
         throw std::invalid_argument(input + ": has no channels; --channel is for LCM logs");
+    if (opener.kind != InputKind::kCamera) {
+        if (options.duration_s > 0) refuse_duration(input);
+        if (!options.device.record.empty())
+            throw std::invalid_argument("--record writes what an OpenNI2 camera sends; INPUT is " + input);
+        if (options.device.repeat)
+            throw std::invalid_argument("--repeat is for .oni files; INPUT is " + input);
+    }
     return opener.open(input, options);
 }
 

@@ -5,11 +5,17 @@
 #include <optional>
 #include <string>
 
+#include "camera/options.hpp"
 #include "core/camera.hpp"
 #include "core/frame_range.hpp"
 #include "core/frame_source.hpp"
 
 namespace planemap::sensor {
+
+/// What INPUT may be, for --help of all who take one.
+inline constexpr const char* kInputs =
+    "openni2[:URI or SERIAL] or freenect for a camera, FILE.oni, an LCM log, a TUM-layout folder (rgb.txt, "
+    "depth.txt, camera.json), or sim:WORLD[?KEY=VALUE&...]";
 
 /// How an input is read.
 struct SourceOptions {
@@ -17,6 +23,8 @@ struct SourceOptions {
     FrameRange frames{};                 ///< what next() gives; as if the source had no others
     std::optional<CameraInfo> camera{};  ///< instead of what the input says of its camera
     std::string channel{};               ///< of a log: whose frames; empty: the first that has depth
+    double duration_s = 0;               ///< a live camera ends then, by the clock; 0: never
+    camera::CameraRequest device{};      ///< of a camera or its recording; `described` is `camera` above
 
     /// Throws std::invalid_argument that names every bad field.
     void validate() const;
@@ -24,6 +32,7 @@ struct SourceOptions {
 
 /// What an input is.
 enum class InputKind {
+    kCamera,     ///< a camera or its recording, see camera::is_camera()
     kSimulator,  ///< sim:WORLD?key=value&...; see SimulatedSource
     kLog,        ///< an LCM log, or any other file: LogSource says what is wrong with it
     kFolder,     ///< a folder in the TUM layout, or nothing that is there: Dataset says so

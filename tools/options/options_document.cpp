@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "options/options_document.hpp"
 
+#include "camera/options.hpp"
 #include "graph/graph.hpp"
 #include "map/map.hpp"
 #include "octomap/octomap_builder.hpp"
@@ -67,11 +68,14 @@ std::string section(const std::string& lead) {
 std::string options_document() {
     sensor::SensorShellOptions sensor;
     simulator::SimulatorOptions simulator;
+    camera::CameraOptions camera;
     return kIntroduction + section<segmentation::SegmentationOptions>("--segmentation-") +
            section<odometry::OdometryOptions>("--odometry-") + section<graph::GraphOptions>("--graph-") +
            section<map::MapOptions>("--map-") + section<octomap::OctomapOptions>("--octomap-") +
            section(sensor::pacing_of(sensor), "--", "Of `planemap-sensor`.") +
            section(sensor::encoding_of(sensor), "--", "Of `planemap-sensor` and `planemap-simulate`.") +
+           section(options_of(camera), "--camera-",
+                   "Of `planemap-sensor` and `planemap-run` on a live camera ([live.md](live.md)).") +
            section(options_of(simulator), "",
                    "Parameters of a name, as in `sim:office?frames=300&seed=7`; `planemap-simulate --help` "
                    "lists the worlds.");

@@ -16,8 +16,8 @@ namespace planemap {
 
 namespace {
 
-/// A folder or the simulator, through the same shell as the sensor process; pixels stay raw, nobody decodes
-/// them twice.
+/// A camera, a folder or the simulator, through the same shell as the sensor process; pixels stay raw, nobody
+/// decodes them twice.
 class SensorInput : public Input {
   public:
     SensorInput(const std::string& name, messages::Bus& bus, const sensor::SourceOptions& options)
@@ -40,6 +40,8 @@ class SensorInput : public Input {
         if (shell_.ends_missing() > 0)
             lines.push_back(std::to_string(shell_.ends_missing()) +
                             " frames from files that are cut short behind their last pixel");
+        for (const auto& [what, count] : shell_.camera_losses())
+            lines.push_back("of the camera: " + std::to_string(count) + " " + what);
         return lines;
     }
 

@@ -22,25 +22,25 @@ namespace {
 struct RunOptions {
     std::string input, frames;
     std::filesystem::path output, poses;
-    std::string channel;
     messages::CameraFlag camera;
+    sensor::SourceOptions source;
     bool no_octomap = false, quiet = false, verbose = false;
     std::optional<std::uint64_t> seed;
     pipeline::PipelineOptions pipeline;
 };
 
 void add_run_flags(messages::Flags& flags, RunOptions& options) {
-    flags.add_positional(
-        "input", options.input,
-        "TUM-layout folder (rgb.txt, depth.txt, camera.json), LCM log, or sim:office[?frames=N&seed=N...]");
+    flags.add_positional("input", options.input, std::string("LCM log, ") + sensor::kInputs);
     flags.add("o,output", options.output, "Folder for the results; made if it is not there");
     flags.required();
     flags.add("frames", options.frames,
               "A:B: only frames A to B-1 of the input, counted from 0; either may be left out");
     options.camera.add_to(
         flags, "camera.json for a log that does not describe its camera, or instead of what INPUT says");
-    flags.add("channel", options.channel,
+    flags.add("channel", options.source.channel,
               "Of a log: the channel of the frames; default: the first that has depth");
+    flags.add("duration", options.source.duration_s,
+              "A live camera ends after so many seconds; 0: with Ctrl-C");
     flags.add("poses", options.poses,
               "Trajectory (TUM or EuRoC format, of the colour camera) that keyframes take their poses from, "
               "instead of the "
@@ -53,6 +53,7 @@ void add_run_flags(messages::Flags& flags, RunOptions& options) {
     flags.add("no-octomap", options.no_octomap, "Do not build the OctoMap to compare with");
     flags.add("q,quiet", options.quiet, "No progress lines");
     flags.add("v,verbose", options.verbose, "Log more");
+    flags.add(camera::options_of(options.source.device.options), "camera-");
     flags.add(options_of(options.pipeline.segmentation), "segmentation-");
     flags.add(options_of(options.pipeline.odometry), "odometry-");
     flags.add(options_of(options.pipeline.graph), "graph-");
@@ -149,15 +150,14 @@ int run(RunOptions options, const nlohmann::ordered_json& about) {
     options.pipeline.with_octomap = !options.no_octomap;
     options.pipeline.camera = options.camera.read();
     if (!options.poses.empty()) options.pipeline.poses = read_given_poses(options.poses);
-    const FrameRange frames = options.frames.empty() ? FrameRange{} : parse_frame_range(options.frames);
+    options.source.camera = options.pipeline.camera;
+    if (!options.frames.empty()) options.source.frames = parse_frame_range(options.frames);
     messages::catch_stop_signals();
 
     messages::Bus bus("memq://");
     pipeline::Pipeline pipeline(bus, options.pipeline);
     const DepthWatch depth(pipeline.decoder());
-    const std::unique_ptr<Input> input =
-        open_input(options.input, bus,
-                   {.frames = frames, .camera = options.pipeline.camera, .channel = options.channel});
+    const std::unique_ptr<Input> input = open_input(options.input, bus, options.source);
     ResultFolder folder(options.output, result_names(options.output, *input));
     warn(folder.take_notes());
 

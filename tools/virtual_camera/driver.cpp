@@ -113,6 +113,7 @@ class Stream : public driver::StreamBase {
             case ONI_STREAM_PROPERTY_VIDEO_MODE:
             case ONI_STREAM_PROPERTY_STRIDE:
             case ONI_STREAM_PROPERTY_MIRRORING:
+            case ONI_STREAM_PROPERTY_CROPPING:  // never done, but recordings without it cannot be played
                 return TRUE;
             default:
                 return FALSE;
@@ -137,6 +138,8 @@ class Stream : public driver::StreamBase {
                 return give(OniBool{TRUE}, data, size);
             case ONI_STREAM_PROPERTY_EXPOSURE:
                 return give(exposure_.load(), data, size);
+            case ONI_STREAM_PROPERTY_CROPPING:
+                return give(OniCropping{}, data, size);
             case ONI_STREAM_PROPERTY_MAX_VALUE:
                 return give(is_fine() ? 65000 : kMaxDepth_mm, data, size);
             default:
