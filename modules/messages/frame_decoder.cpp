@@ -13,6 +13,7 @@
 #include "messages/channels.hpp"
 #include "messages/convert.hpp"
 #include "messages/decode.hpp"
+#include "messages/image_codec.hpp"
 #include "messages/image_pixels.hpp"
 
 namespace planemap::messages {

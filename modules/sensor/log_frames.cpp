@@ -21,7 +21,7 @@ using messages::is_a;
 using messages::LogEvent;
 
 bool is_frame(const LogEvent& event) {
-    return is_a<bot_core::images_t>(event.bytes) || is_a<kinect::frame_msg_t>(event);
+    return is_a<bot_core::images_t>(event.bytes) || is_a<kinect::frame_msg_t>(event.bytes);
 }
 
 bool has_depth(const LogEvent& event) {
