@@ -26,7 +26,7 @@ constexpr std::int64_t kMaxLines = 20;
 
 template <typename T>
 void decode_if(const messages::LogEvent& event) {
-    if (messages::is_a<T>(event)) messages::decode<T>(event.bytes);
+    if (messages::is_a<T>(event.bytes)) messages::decode<T>(event.bytes);
 }
 
 template <typename... Types>
