@@ -55,8 +55,11 @@ struct BagWriter::Rosbag {
     rosbag::Bag bag;
 };
 
-BagWriter::BagWriter(const std::string& file) : rosbag_(new Rosbag) {
+BagWriter::BagWriter(const std::string& file, const std::string& compression) : rosbag_(new Rosbag) {
     rosbag_->bag.open(file, rosbag::bagmode::Write);
+    rosbag_->bag.setChunkThreshold(10000);  // several chunks in a small bag
+    if (compression == "bz2") rosbag_->bag.setCompression(rosbag::compression::BZ2);
+    if (compression == "lz4") rosbag_->bag.setCompression(rosbag::compression::LZ4);
 }
 
 BagWriter::~BagWriter() = default;

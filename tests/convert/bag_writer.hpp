@@ -12,7 +12,8 @@ namespace convert {
 
 class BagWriter {
   public:
-    explicit BagWriter(const std::string& file);
+    /// `compression`: none, bz2 or lz4.
+    explicit BagWriter(const std::string& file, const std::string& compression = "none");
     ~BagWriter();
     /// A message of any type by its bytes.
     void write(const std::string& topic, std::int64_t utime, const std::string& type,

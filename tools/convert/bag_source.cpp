@@ -321,7 +321,7 @@ Choice choose(const BagContents& bag, const std::string& file, const BagOptions&
 class BagSource : public FrameSource {
   public:
     BagSource(const std::filesystem::path& file, const BagOptions& options)
-        : file_(file.string()), max_gap_us_(std::llround(options.max_color_gap_s * 1e6)), bag_(file_) {
+        : file_(file.string()), max_gap_us_(std::llround(options.max_color_gap_s * 1e6)), bag_(file) {
         choice_ = choose(BagContents(bag_, file_), file_, options);
         std::vector<std::string> topics = {choice_.depth.name};
         bag_.select(topics);
@@ -334,7 +334,7 @@ class BagSource : public FrameSource {
     std::optional<std::size_t> size() const override { return size_; }
     std::vector<std::string> notes() const override { return choice_.notes; }
     std::vector<std::string> complaints() const override {
-        std::vector<std::string> lines;
+        std::vector<std::string> lines = bag_.complaints();
         if (lone_colors_ > 0)
             lines.push_back(file_ + ": " + std::to_string(lone_colors_) +
                             " colour images without depth near in time");
@@ -497,7 +497,12 @@ ReadResult BagSource::next(SensorFrame& frame) {
 }  // namespace
 
 std::unique_ptr<FrameSource> open_bag(const std::filesystem::path& file, const BagOptions& options) {
-    return std::make_unique<BagSource>(file, options);
+    try {
+        return std::make_unique<BagSource>(file, options);
+    } catch (const std::exception& error) {
+        const std::string what = error.what(), name = file.string() + ": ";
+        throw std::runtime_error(what.starts_with(name) ? what : name + what);
+    }
 }
 
 }  // namespace planemap::convert
