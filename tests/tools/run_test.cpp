@@ -389,7 +389,7 @@ TEST_F(RunTest, AnOddFolderIsMappedAndWhatIsWrongInItIsSaid) {
 
 TEST_F(RunTest, TheSensorSaysWhatItCannotRead) {
     write_file(folder_ / "x.lcmlog", std::string("\xed\xa1\xda\x01", 4) + std::string(24, '\0'));
-    expect_error("planemap-sensor", path("x.lcmlog") + " -l memq://", "not a folder but an LCM log");
+    expect_error("planemap-sensor", path("x.lcmlog") + " -l memq://", "x.lcmlog: is no LCM log");
     expect_error("planemap-sensor", path("none") + " -l memq://", "no such folder");
     write_odd_folder(folder_ / "odd");
     std::filesystem::remove_all(folder_ / "odd/my scan");
