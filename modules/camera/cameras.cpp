@@ -28,9 +28,9 @@ std::optional<std::string> wanted_of(const std::string& input, const std::string
 
 /// Its drivers stay while the camera is away, to see it come back. A recording ends with the first opening.
 std::unique_ptr<FrameSource> open_openni2(const std::string& wanted, const CameraRequest& request) {
-    const auto library = std::make_shared<OpenNi2Library>();
     return std::make_unique<LiveSource>(
-        [=, again = false](const std::string& serial) mutable -> std::unique_ptr<LiveCamera> {
+        [library = std::make_shared<OpenNi2Library>(), wanted, request,
+         again = false](const std::string& serial) mutable -> std::unique_ptr<LiveCamera> {
             CameraRequest now = request;
             if (std::exchange(again, true)) now.record.clear();
             return std::make_unique<OpenNi2Camera>(serial.empty() ? wanted : serial, now);

@@ -125,5 +125,26 @@ TEST(OptionList, OneErrorNamesEveryBadField) {
               "part.min_fill is nan, must be greater than 0, less than 1");
 }
 
+TEST(Option, IsSetFromText) {
+    Options options;
+    const OptionList list = options_of(options);
+    const auto set = [&](const std::string& name, const std::string& text) {
+        for (const Option& option : list.options())
+            if (option.name == name) option.set(text);
+    };
+    set("gap_m", "2.5");
+    set("threads", "3");
+    set("method", "exact");
+    set("exact", "1");
+    EXPECT_EQ(options.gap_m, 2.5);
+    EXPECT_EQ(options.threads, 3);
+    EXPECT_EQ(options.method, "exact");
+    EXPECT_TRUE(options.exact);
+    EXPECT_THROW(set("gap_m", "2.5m"), std::invalid_argument);
+    EXPECT_THROW(set("threads", "2.5"), std::invalid_argument);
+    EXPECT_THROW(set("exact", "yes"), std::invalid_argument);
+    EXPECT_EQ(options.threads, 3);
+}
+
 }  // namespace
 }  // namespace planemap

@@ -13,7 +13,8 @@ fail() {
 }
 
 cmake --install "$build" --prefix "$work/prefix" >"$work/install.log" || fail "cmake --install: $(tail -n 3 "$work/install.log")"
-for file in bin/planemap-run bin/planemap-launch bin/planemap-spy bin/planemap-viewer bin/planemap-export share/java/planemap_spy.jar share/planemap/lcmtypes/planemap_plane_map_t.lcm \
+for file in bin/planemap-run bin/planemap-launch bin/planemap-spy bin/planemap-viewer bin/planemap-export bin/planemap-log bin/planemap-convert share/java/planemap_spy.jar \
+    bin/planemap-virtual-camera lib/planemap/libPlanemapVirtualCamera.so.0 share/planemap/lcmtypes/planemap_plane_map_t.lcm \
     include/planemap/lcmtypes/planemap/plane_map_t.hpp include/planemap/map/queries.hpp; do
     [[ -e "$work/prefix/$file" ]] || fail "$file is not installed"
 done
@@ -33,6 +34,12 @@ build/02_listen_to_the_map "file://$1/map.lcmlog?speed=0" 1 >heard.txt
 grep -q '^map .* planes$' heard.txt || { echo "02: $(cat heard.txt)"; exit 1; }
 if build/03_ask_a_map no_such.lcmlog 2>error.txt; then echo "03 takes a file that is not there"; exit 1; fi
 grep -q no_such.lcmlog error.txt
+
+# The virtual camera's driver is found where it was installed.
+prefix/bin/planemap-virtual-camera sim:office -- planemap-sensor --list | grep -q VIRTUAL0001 || {
+    echo "planemap-virtual-camera shows no camera"
+    exit 1
+}
 
 # The installed programs run and say the same version.
 version="$(prefix/bin/planemap-run --version)"

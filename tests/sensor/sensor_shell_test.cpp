@@ -47,6 +47,30 @@ class FakeSource : public FrameSource {
     int next_ = 0;
 };
 
+/// A live camera that is unplugged between its first frame and its second.
+class UnpluggedSource : public FrameSource {
+  public:
+    explicit UnpluggedSource(CameraInfo camera) : camera_(std::move(camera)) {}
+    const CameraInfo& camera() const override { return camera_; }
+    std::optional<std::size_t> size() const override { return std::nullopt; }
+    bool is_live() const override { return true; }
+    ReadResult next(SensorFrame& frame) override {
+        frame = {};
+        const int index = next_++;
+        if (index == 1 || index == 2) return {ReadResult::Status::kNothing, "Xtion: unplugged"};
+        if (index == 4) return {};
+        frame.utime = 1000000 + 33333 * index;
+        frame.depth = DepthImage(camera_.depth.width, camera_.depth.height, 1000);
+        ReadResult result{ReadResult::Status::kFrame, ""};
+        result.lost["frames that the camera did not send"] = 3;
+        return result;
+    }
+
+  private:
+    CameraInfo camera_;
+    int next_ = 0;
+};
+
 /// Frames of one pixel's worth at given stamps, which may wait before one of them.
 class StampedSource : public FrameSource {
   public:
@@ -324,6 +348,19 @@ TEST_F(SensorShellTest, BadOptionsAreNamed) {
         EXPECT_NE(std::string(error.what()).find("rate"), std::string::npos);
         EXPECT_NE(std::string(error.what()).find("color"), std::string::npos);
     }
+}
+
+TEST_F(SensorShellTest, AnUnpluggedCameraIsFailingUntilItsFramesComeAgain) {
+    SensorShell shell(bus_, std::make_unique<UnpluggedSource>(camera()), {});
+    std::vector<std::string> lines;
+    while (shell.poll() >= 0) lines.push_back(shell.status().line());
+    ASSERT_GE(lines.size(), 4u);
+    EXPECT_THAT(lines[1],
+                testing::AllOf(testing::HasSubstr("failing"), testing::HasSubstr("Xtion: unplugged")));
+    EXPECT_THAT(lines.back(), testing::Not(testing::HasSubstr("unplugged")));
+    EXPECT_EQ(shell.frames(), 2);
+    EXPECT_EQ(shell.broken(), 0);
+    EXPECT_EQ(shell.camera_losses().at("frames that the camera did not send"), 6);
 }
 
 }  // namespace
