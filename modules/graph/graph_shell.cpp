@@ -4,6 +4,8 @@
 #include <spdlog/spdlog.h>
 
 #include <chrono>
+#include <iterator>
+#include <map>
 
 #include "messages/channels.hpp"
 #include "messages/convert.hpp"
@@ -19,22 +21,62 @@ constexpr const char* kFeatures =
 constexpr const char* kFailed = "optimisations in which the solver gave up";
 }  // namespace
 
-GraphShell::GraphShell(messages::Bus& bus, const GraphOptions& options, Optimising optimising)
-    : bus_(bus), optimising_(optimising), graph_(options) {
+GraphShell::GraphShell(messages::Bus& bus, const GraphOptions& options, Optimising optimising,
+                       const GraphFiles& files)
+    : bus_(bus), optimising_(optimising), graph_(options), output_(files.output) {
+    if (!files.journal.empty()) {
+        journal_ = std::make_unique<messages::Journal>(files.journal);
+        resume();
+    }
     // Keyframes are few and each counts: a long queue.
     bus_.subscribe(messages::channels::kKeyframe,
                    status_.guard([this](const messages::RawMessage& m) { on_keyframe(m); }), 256);
+    if (!output_.empty())
+        bus_.subscribe(messages::channels::kOdometry, [this](const messages::RawMessage& m) { on_odometry(m); }, 256);
+}
+
+void GraphShell::on_odometry(const messages::RawMessage& message) {
+    const OdometryEstimate e = messages::from_message(messages::decode<odometry_t>(message.bytes));
+    if (e.status == TrackingStatus::kLost) return;
+    frames_.push_back({e.pose_utime, e.status, e.keyframe_id, e.keyframe_from_camera, e.odom_from_camera});
+    if (frames_.size() <= kMostFrames) return;
+    frames_.pop_front();
+    status_.lost("oldest frames of trajectory.txt");
+}
+
+/// As planemap-run leaves it.
+void GraphShell::write_trajectory() {
+    const KeyframeTrajectory& graph = graph_.trajectory();
+    poses_.update(graph.keyframes);
+    Trajectory trajectory = place_frames(frames_, poses_, graph.world_from_odom);
+    Trajectory before;  // of what came before this process there are the keyframes
+    for (const KeyframePose& keyframe : graph.keyframes)
+        if (trajectory.empty() || keyframe.utime < trajectory.front().utime)
+            before.push_back({keyframe.utime, keyframe.world_from_camera});
+    trajectory.insert(trajectory.begin(), before.begin(), before.end());
+    if (trajectory.empty()) return;
+    std::filesystem::create_directories(output_);
+    planemap::write_trajectory(output_ / "trajectory.txt", trajectory);
 }
 
 void GraphShell::on_keyframe(const messages::RawMessage& message) {
     const keyframe_t received = messages::decode<keyframe_t>(message.bytes);
     const Keyframe keyframe = messages::from_message(received);
+    if (came_again(received)) return;
     if (!keyframe_guard_.admits(received.session, received.seq, received.utime, message.bytes)) return;
     if (odometry_started_again_ || !graph_.expects(keyframe.id)) {
         refuse(keyframe.id);
         // Of two, nobody knows which is the stray: the graph goes on with the second.
         if (graph_.trajectory().keyframes.size() > 1) return;
     }
+    add(keyframe);
+    took(received);
+    if (journal_) journal_->add(message.channel, message.bytes);
+    publish();
+    start_if_due();
+}
+
+void GraphShell::add(const Keyframe& keyframe) {
     try {
         const messages::ModuleStatus::Work work(status_);
         if (optimising_ == Optimising::kInHandler)
@@ -45,8 +87,64 @@ void GraphShell::on_keyframe(const messages::RawMessage& message) {
         throw messages::MessageError(error.what());
     }
     messages::remark_new_part(status_, keyframe.id, keyframe.previous_id, keyframe.utime);
+}
+
+/// One that the graph has: odometry sends the last ones again when a module was started again.
+bool GraphShell::came_again(const keyframe_t& received) const {
+    return received.session != 0 && received.session == last_session_ && lately_.contains(received.id);
+}
+
+void GraphShell::took(const keyframe_t& received) {
+    constexpr std::size_t kLately = 256;
+    if (received.session != last_session_) lately_.clear();
+    last_session_ = received.session;
+    lately_.insert(received.id);
+    if (lately_.size() > kLately) lately_.erase(lately_.begin());
+}
+
+/// Takes the keyframes of the process before.
+void GraphShell::resume() {
+    for (const std::string& complaint : journal_->complaints()) spdlog::warn("graph: {}", complaint);
+    messages::LogEvent last;
+    journal_->replay([&](const messages::LogEvent& event) {
+        try {
+            const keyframe_t received = messages::decode<keyframe_t>(event.bytes);
+            const Keyframe keyframe = messages::from_message(received);
+            if (!graph_.expects(keyframe.id)) return;
+            add(keyframe);
+            took(received);
+            last = event;
+        } catch (const messages::MessageError& error) {
+            bus_.complaints().add(journal_->file().string() + ": a keyframe left out: " + error.what());
+        }
+    });
+    if (last.bytes.empty()) return;
+    const keyframe_t newest = messages::decode<keyframe_t>(last.bytes);
+    keyframe_guard_.resume(newest.session, newest.seq, newest.utime, last.bytes);
+    spdlog::info("graph: goes on with {} keyframes of {}", graph_.trajectory().keyframes.size(),
+                 journal_->file().string());
     publish();
     start_if_due();
+}
+
+/// Makes the journal as small as the graph is: without the keyframes that went for newer ones of their place. An edge from
+/// one of these leads from the newest before it that is left, as the graph has both.
+void GraphShell::compact() {
+    std::map<int, Pose> poses;
+    for (const KeyframePose& keyframe : graph_.trajectory().keyframes)
+        poses[keyframe.id] = keyframe.world_from_camera;
+    journal_->compact([&](messages::LogEvent& event) {
+        keyframe_t message = messages::decode<keyframe_t>(event.bytes);
+        const auto here = poses.find(message.id);
+        if (here == poses.end()) return false;
+        if (message.previous_id < 0 || poses.contains(message.previous_id) || here == poses.begin()) return true;
+        const auto before = std::prev(here);
+        Keyframe keyframe = messages::from_message(message);
+        keyframe.previous_id = before->first;
+        keyframe.previous_from_camera = before->second.inverse(Eigen::Isometry) * here->second;
+        event.bytes = messages::to_bytes(messages::to_message(keyframe, message.seq, message.session));
+        return true;
+    });
 }
 
 /// Says what a refused keyframe looks like: of the first, and when some come in a row.
@@ -77,6 +175,10 @@ void GraphShell::start_if_due() {
 int GraphShell::poll() {
     constexpr int kIdleMs = 100, kRunningMs = 10;
     republish_if_due();
+    if (journal_) {
+        if (journal_->is_due_to_compact()) compact();
+        if (const auto news = journal_->news()) status_.remark("journal", *news);
+    }
     if (!running_) return kIdleMs;
     if (done_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return kRunningMs;
     done_.get();
@@ -99,6 +201,7 @@ void GraphShell::finish() {
         graph_.finish();
     }
     publish();
+    if (!output_.empty()) write_trajectory();
 }
 
 /// What the graph did without since it was last told.
@@ -120,6 +223,7 @@ void GraphShell::republish_if_due() {
 void GraphShell::publish() {
     tell_losses();
     const KeyframeTrajectory& trajectory = graph_.trajectory();
+    if (!output_.empty()) poses_.update(trajectory.keyframes);
     bus_.publish(messages::channels::kTrajectory, messages::to_message(trajectory, seq_++, bus_.session()));
     published_us_ = messages::now_us();
     status_.published();

@@ -1,11 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <deque>
+#include <filesystem>
 #include <future>
+#include <memory>
 #include <optional>
+#include <planemap/keyframe_t.hpp>
+#include <set>
 
+#include "core/frame_poses.hpp"
 #include "graph/graph.hpp"
 #include "messages/channels.hpp"
+#include "messages/journal.hpp"
 #include "messages/process.hpp"
 #include "messages/stream_guard.hpp"
 
@@ -17,11 +24,19 @@ enum class Optimising {
     kInBackground,  ///< on another thread; messages do not wait, and the result is published when it is there
 };
 
-/// PLANEMAP_KEYFRAME to PLANEMAP_TRAJECTORY.
+/// Where a graph is kept; empty: nowhere.
+struct GraphFiles {
+    std::filesystem::path output;   ///< folder that trajectory.txt is written to at the end
+    std::filesystem::path journal;  ///< keyframes, for a process that is started again
+};
+
+/// PLANEMAP_KEYFRAME to PLANEMAP_TRAJECTORY. With a journal, a process that is started again goes on with the keyframes of
+/// the one before, in the same world frame. With an output folder, PLANEMAP_ODOMETRY is heard, too, and trajectory.txt has
+/// all frames (of those before a restart: the keyframes).
 class GraphShell : public messages::Shell {
   public:
     GraphShell(messages::Bus& bus, const GraphOptions& options,
-               Optimising optimising = Optimising::kInHandler);
+               Optimising optimising = Optimising::kInHandler, const GraphFiles& files = {});
 
     messages::ModuleStatus& status() override { return status_; }
     /// Publishes what the background has finished, gives it what is due, and repeats the trajectory when a
@@ -32,7 +47,16 @@ class GraphShell : public messages::Shell {
     const PoseGraph& graph() const { return graph_; }
 
   private:
+    static constexpr std::size_t kMostFrames = 1000000;  ///< nine hours; then the oldest go
+
     void on_keyframe(const messages::RawMessage& message);
+    void add(const Keyframe& keyframe);
+    bool came_again(const keyframe_t& received) const;
+    void took(const keyframe_t& received);
+    void resume();
+    void compact();
+    void on_odometry(const messages::RawMessage& message);
+    void write_trajectory();
     void refuse(int id);
     void start_if_due();
     void publish();
@@ -52,6 +76,12 @@ class GraphShell : public messages::Shell {
     std::optional<int> last_refused_;  ///< id of the last keyframe that was left out
     int refused_in_row_ = 0;           ///< with ids one after the other
     bool odometry_started_again_ = false;
+    std::unique_ptr<messages::Journal> journal_;  ///< null without
+    std::filesystem::path output_;
+    std::deque<FramePose> frames_;  ///< where the frames were, at most kMostFrames
+    KeyframePoses poses_;
+    std::int64_t last_session_ = 0;               ///< of the last keyframe that was taken
+    std::set<int> lately_;                        ///< ids of the last ones that were taken
 };
 
 }  // namespace planemap::graph

@@ -13,6 +13,7 @@ int main(int argc, char** argv) {
         "and grow on");
     process.flags().add(options_of(options.map));
     return process.run(argc, argv, [&](planemap::messages::Bus& bus) {
+        options.journal = process.journal();
         return std::make_unique<planemap::map::MapShell>(bus, options);
     });
 }

@@ -77,6 +77,26 @@ void PlaneMapper::update(const KeyframeTrajectory& trajectory) {
     refresh();
 }
 
+std::map<int, std::vector<int>> PlaneMapper::planes_of_regions() const {
+    std::map<int, std::vector<int>> planes;
+    for (const auto& [id, keyframe] : keyframes_.keyframes())
+        for (const StoredRegion& region : keyframe.regions) planes[id].push_back(region.plane);
+    return planes;
+}
+
+void PlaneMapper::restore_ids(const std::map<int, std::vector<int>>& planes_of_regions) {
+    for (auto& [id, keyframe] : keyframes_.keyframes()) {
+        const auto known = planes_of_regions.find(id);
+        const bool fits = known != planes_of_regions.end() && known->second.size() == keyframe.regions.size();
+        for (std::size_t i = 0; i < keyframe.regions.size(); ++i)
+            keyframe.regions[i].plane = fits ? known->second[i] : -1;
+    }
+    for (const auto& [id, planes] : planes_of_regions)
+        for (const int plane : planes) planes_.reserve_id(plane);
+    rebuild();
+    refresh();
+}
+
 void PlaneMapper::settle() {
     if (settled_) return;
     rebuild();

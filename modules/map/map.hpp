@@ -56,6 +56,11 @@ class PlaneMapper {
     /// it saw goes over to the nearest eight of those, see hand_over().
     void update(const KeyframeTrajectory& trajectory);
 
+    /// Which plane each region of each keyframe is part of, in the order in which the mapper keeps them: by plane id, -1
+    /// for none. With the same keyframes and poses, restore_ids() gives the planes of another mapper their ids by it.
+    std::map<int, std::vector<int>> planes_of_regions() const;
+    void restore_ids(const std::map<int, std::vector<int>>& planes_of_regions);
+
     /// Brings the map into the form that does not depend on the order of arrival; for the end of a run, or a
     /// pause. Does nothing if nothing came since the last rebuild.
     void settle();
@@ -81,6 +86,7 @@ class PlaneMapper {
         return losses_.regions_refused + losses_.regions_too_many + losses_.planes_refused;
     }
     const MapLosses& losses() const { return losses_; }
+    bool has_keyframe(int id) const { return keyframes_.keyframes().contains(id); }
     /// Keyframes that are kept, and those whose regions went over to others.
     std::size_t keyframes() const { return keyframes_.keyframes().size(); }
     std::size_t replaced() const { return replaced_; }

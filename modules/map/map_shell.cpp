@@ -10,6 +10,7 @@
 
 #include "map/earlier_map.hpp"
 #include "map/map_file.hpp"
+#include "map/region_planes.hpp"
 #include "messages/channels.hpp"
 #include "messages/convert.hpp"
 #include "messages/decode.hpp"
@@ -18,6 +19,7 @@ namespace planemap::map {
 
 namespace {
 constexpr std::int64_t kWritePeriodUs = 5000000;
+constexpr std::int64_t kSavePeriodUs = 1000000;   ///< of poses and plane ids to the journal
 constexpr std::int64_t kRetryPeriodUs = 1000000;  ///< after a write that failed
 constexpr const char* kFile = "plane_map.lcmlog";
 
@@ -46,6 +48,10 @@ MapShell::MapShell(messages::Bus& bus, const MapShellOptions& options)
     tell_losses();
     status_.lost("fine edges of planes, since the map to start from is very large",
                  static_cast<std::int64_t>(mapper_.coarsened()));
+    if (!options.journal.empty()) {
+        journal_ = std::make_unique<messages::Journal>(options.journal);
+        resume();
+    }
     if (!output_.empty()) try_output();
     bus_.subscribe(messages::channels::kKeyframe,
                    status_.guard([this](const messages::RawMessage& m) { on_keyframe(m); }), 256);
@@ -56,9 +62,13 @@ MapShell::MapShell(messages::Bus& bus, const MapShellOptions& options)
 void MapShell::on_keyframe(const messages::RawMessage& message) {
     const keyframe_t received = messages::decode<keyframe_t>(message.bytes);
     const Keyframe keyframe = messages::from_message(received);
+    // Odometry sends the last ones again when a module was started again.
+    if (received.session != 0 && received.session == keyframes_of_ && watch_.has(keyframe.id)) return;
     if (!keyframe_guard_.admits(received.session, received.seq, received.utime, message.bytes)) return;
+    keyframes_of_ = received.session;
     watch_.came(keyframe.id, keyframe.previous_id, keyframe.utime);
     mapper_.add(keyframe);
+    if (journal_) journal_->add(message.channel, message.bytes);
     tell_losses();
     tell();
 }
@@ -72,8 +82,77 @@ void MapShell::on_trajectory(const messages::RawMessage& message) {
         mapper_.update(trajectory);
     }
     watch_.named(trajectory, messages::now_us());
+    if (journal_) trajectory_.assign(message.bytes.begin(), message.bytes.end());
     tell_losses();
     publish();
+}
+
+/// Takes keyframes, their poses and the planes' ids from the process before.
+void MapShell::resume() {
+    for (const std::string& complaint : journal_->complaints()) spdlog::warn("map: {}", complaint);
+    std::vector<std::uint8_t> trajectory, ids;
+    std::optional<keyframe_t> newest;
+    std::vector<std::uint8_t> newest_bytes;
+    journal_->replay([&](const messages::LogEvent& event) {
+        if (event.channel == messages::channels::kTrajectory) {
+            trajectory = event.bytes;
+        } else if (event.channel == kRegionPlanes) {
+            ids = event.bytes;
+        } else {
+            try {
+                keyframe_t received = messages::decode<keyframe_t>(event.bytes);
+                const Keyframe keyframe = messages::from_message(received);
+                watch_.came(keyframe.id, keyframe.previous_id, keyframe.utime);
+                mapper_.add(keyframe);
+                newest = std::move(received);
+                newest_bytes = event.bytes;
+            } catch (const messages::MessageError& error) {
+                bus_.complaints().add(journal_->file().string() + ": a keyframe left out: " + error.what());
+            }
+        }
+    });
+    if (newest) {
+        keyframe_guard_.resume(newest->session, newest->seq, newest->utime, newest_bytes);
+        keyframes_of_ = newest->session;
+    }
+    if (trajectory.empty()) return;
+    const trajectory_t last = messages::decode<trajectory_t>(trajectory);
+    trajectory_guard_.resume(last.session, last.seq, std::nullopt, trajectory);
+    const KeyframeTrajectory poses = messages::from_message(last);
+    mapper_.update(poses);
+    mapper_.restore_ids(decode_region_planes(ids));
+    watch_.named(poses, messages::now_us());
+    tell_losses();
+    spdlog::info("map: goes on with {} planes of {} keyframes of {}", mapper_.map().planes.size(), mapper_.keyframes(),
+                 journal_->file().string());
+    publish();
+}
+
+/// Once a second: poses and ids, of which a kill loses no more; now and then: the journal becomes as small as the map is.
+void MapShell::tend_journal() {
+    const std::int64_t now = messages::now_us();
+    if (!trajectory_.empty() && now - saved_us_ >= kSavePeriodUs) save_poses_and_ids();
+    if (journal_->is_due_to_compact()) {
+        save_poses_and_ids();
+        std::int64_t last = -1;  // of the poses, and of the ids, only the last ones count
+        journal_->replay([&](const messages::LogEvent& event) {
+            if (event.channel == kRegionPlanes) last = event.number;
+        });
+        journal_->compact([&](const messages::LogEvent& event) {
+            if (event.channel == messages::channels::kKeyframe)
+                return mapper_.has_keyframe(messages::decode<keyframe_t>(event.bytes).id);
+            return event.number >= last - 1;
+        });
+    }
+    if (const auto news = journal_->news()) status_.remark("journal", *news);
+}
+
+void MapShell::save_poses_and_ids() {
+    if (trajectory_.empty()) return;
+    journal_->add(messages::channels::kTrajectory, trajectory_);
+    journal_->add(kRegionPlanes, encode_region_planes(mapper_.planes_of_regions()));
+    trajectory_.clear();
+    saved_us_ = messages::now_us();
 }
 
 /// What the mapper left out since the last time.
@@ -100,7 +179,13 @@ void MapShell::tell_losses() {
 void MapShell::publish() {
     bus_.publish(messages::channels::kMap, messages::to_message(mapper_.map(), seq_++, bus_.session()));
     published_us_ = messages::now_us();
-    status_.published();
+    // How old a map is, is told by the keyframe that is new in it.
+    if (const std::int64_t utime = mapper_.map().utime; utime > newest_utime_) {
+        newest_utime_ = utime;
+        status_.published(utime, published_us_);
+    } else {
+        status_.published();
+    }
     unwritten_ = true;
     tell();
 }
@@ -116,6 +201,7 @@ void MapShell::tell() {
 }
 
 int MapShell::poll() {
+    if (journal_) tend_journal();
     watch_.tell(messages::now_us());
     if (published_us_ != 0 && messages::now_us() - published_us_ >= messages::kRepeat_us) {
         // For those who come late while the camera stands still: the same message again, which is no work.
@@ -131,6 +217,7 @@ void MapShell::finish() {
     const std::size_t rebuilds = mapper_.rebuilds();
     mapper_.settle();
     if (mapper_.rebuilds() != rebuilds) publish();
+    if (journal_) save_poses_and_ids();
     if (!output_.empty() && unwritten_) try_write();
     if (!output_.empty() && !is_ours_ && write_error_.empty())
         spdlog::info("{}: no planes came, so the earlier map stays", (output_ / kFile).string());

@@ -2,10 +2,13 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
+#include <vector>
 
 #include "map/map.hpp"
 #include "messages/channels.hpp"
+#include "messages/journal.hpp"
 #include "messages/keyframe_watch.hpp"
 #include "messages/process.hpp"
 #include "messages/stream_guard.hpp"
@@ -22,6 +25,9 @@ struct MapShellOptions {
     /// error. A disk that is full is not, nor a write that fails later: it is said in the status and tried
     /// again every second, at the end finish() throws if the last one failed.
     std::filesystem::path output;
+    /// Keyframes, poses and plane ids are kept in this file: a process that is started again goes on with them, in the
+    /// same world frame; empty: in none.
+    std::filesystem::path journal;
 };
 
 /// PLANEMAP_KEYFRAME and PLANEMAP_TRAJECTORY to PLANEMAP_MAP. Throws std::runtime_error naming the file for a
@@ -40,6 +46,9 @@ class MapShell : public messages::Shell {
   private:
     void on_keyframe(const messages::RawMessage& message);
     void on_trajectory(const messages::RawMessage& message);
+    void resume();
+    void tend_journal();
+    void save_poses_and_ids();
     void tell_losses();
     void publish();
     void tell();
@@ -56,6 +65,11 @@ class MapShell : public messages::Shell {
     messages::StreamGuard keyframe_guard_{messages::channels::kKeyframe, "keyframes", status_};
     messages::StreamGuard trajectory_guard_{messages::channels::kTrajectory, "trajectories", status_, false};
     messages::KeyframeWatch watch_;
+    std::unique_ptr<messages::Journal> journal_;  ///< null without
+    std::vector<std::uint8_t> trajectory_;        ///< the last one, where the journal does not have it yet
+    std::int64_t keyframes_of_ = 0;               ///< session of the last keyframe
+    std::int64_t saved_us_ = 0;                   ///< wall clock when the journal got the last one
+    std::int64_t newest_utime_ = 0;               ///< of the keyframes in the map
     MapLosses told_;  ///< what the status knows
     std::int32_t seq_ = 0;
     std::int64_t published_us_ = 0;  ///< wall clock of the last map; 0: none yet

@@ -24,6 +24,9 @@ class Planes {
     /// Takes a plane of a finished map; it is part of the map from the next rebuild() on.
     void start_from(PlaneEstimate plane);
 
+    /// Gives the id to no new plane.
+    void reserve_id(int id) { ids_.reserve(id); }
+
     /// Takes the regions of a keyframe, which has a pose, into the planes that they fit best or new ones;
     /// merges planes that have come to satisfy the rules, and carves what the keyframe sees past.
     void integrate(int keyframe_id, KeyframeStore& store, MapLosses& losses);

@@ -15,13 +15,13 @@
 #include <cstring>
 #include <ctime>
 #include <fstream>
-#include <random>
 #include <stdexcept>
 #include <thread>
 
 #include "messages/channels.hpp"
 #include "messages/interrupt.hpp"
 #include "messages/reassembly.hpp"
+#include "messages/session.hpp"
 
 namespace planemap::messages {
 
@@ -143,12 +143,6 @@ std::string receive_buffer_advice(const std::string& url) {
 }
 
 namespace {
-
-std::int64_t random_session() {
-    std::random_device random;
-    const std::uint64_t bits = std::uint64_t{random()} << 32 | random();
-    return static_cast<std::int64_t>(bits >> 1 | 1);
-}
 
 /// Subscriptions are regular expressions: no character of a prefix may mean anything in one.
 const std::string& checked_prefix(const std::string& prefix) {

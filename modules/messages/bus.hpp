@@ -52,10 +52,14 @@ class Bus {
     const std::string& channel_prefix() const { return prefix_; }
     /// True for memq://, where nothing may be dropped.
     bool in_process() const { return endpoint_.in_process(); }
+    /// True where what comes was sent just now: not on memq://, nor from a log.
+    bool is_network() const { return endpoint_.is_network(); }
 
     /// Tells what this process sends from what another one sends, or it itself before it started again: drawn
     /// at random, not 0. In one process 0, so that the same input gives the same bytes.
     std::int64_t session() const { return session_; }
+    /// Goes on as what a process of this session sent (see messages/session.hpp); before anything is published.
+    void go_on_as(std::int64_t session) { session_ = session; }
 
     /// Sends a message. Throws std::invalid_argument for a channel that is too long for LCM. One that cannot
     /// be sent (no connection, too large) is counted in unsent().

@@ -25,6 +25,14 @@
 
 namespace planemap::messages {
 
+/// A message as the bytes that are sent.
+template <typename T>
+std::vector<std::uint8_t> to_bytes(const T& message) {
+    std::vector<std::uint8_t> bytes(static_cast<std::size_t>(message.getEncodedSize()));
+    message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+    return bytes;
+}
+
 /// The stamp of a message; throws MessageError naming the field if it is beyond kFarthestUtime.
 std::int64_t checked_utime(std::int64_t utime, const char* field);
 

@@ -306,8 +306,10 @@ void FrameDecoder::on_frame(const RawMessage& message) {
     if (!camera_) {
         for (const Subscriber& subscriber : subscribers_) {
             ModuleStatus& status = *subscriber.status;
-            if (subscriber.main_stream) status.received();
-            status.dropped();
+            if (subscriber.main_stream) {
+                status.received();
+                status.dropped();
+            }
             lose(subscriber, "frames before their camera was described");
             status.set_text(camera_refused_.empty()
                                 ? std::string("no ") + channels::kCameraInfo +
@@ -319,6 +321,7 @@ void FrameDecoder::on_frame(const RawMessage& message) {
     }
     try {
         const auto [frame, verdict] = take(message);
+        if (verdict == Verdict::kTake && is_stale(message)) return lose_stale(*frame);
         for (const Subscriber& subscriber : subscribers_) {
             ModuleStatus& status = *subscriber.status;
             if (subscriber.main_stream && verdict != Verdict::kForeign) status.received(frame->seq());
@@ -330,6 +333,21 @@ void FrameDecoder::on_frame(const RawMessage& message) {
     } catch (const MessageError& error) {
         for (const Subscriber& subscriber : subscribers_) count(*subscriber.status, error);
         throw;
+    }
+}
+
+/// Whether the frame has waited for its turn for so long that the next one is worth more.
+bool FrameDecoder::is_stale(const RawMessage& message) const {
+    const bool has_main = std::any_of(subscribers_.begin(), subscribers_.end(),
+                                      [](const Subscriber& subscriber) { return subscriber.main_stream; });
+    return has_main && bus_.is_network() && now_us() - message.recv_utime > kStale_us;
+}
+
+void FrameDecoder::lose_stale(const Frame& frame) {
+    for (const Subscriber& subscriber : subscribers_) {
+        if (subscriber.main_stream) subscriber.status->received(frame.seq());
+        subscriber.status->dropped();
+        lose(subscriber, kStale);
     }
 }
 

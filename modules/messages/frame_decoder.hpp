@@ -85,6 +85,11 @@ class FrameDecoder {
     /// message that is no usable frame.
     std::shared_ptr<const Frame> decode(const RawMessage& message) const;
 
+    /// On a network, a frame that waited longer than this for its turn is dropped: in every process that lives on
+    /// frames, before anything is done with it. What it counts as lost is kStale.
+    static constexpr std::int64_t kStale_us = 500000;
+    static constexpr const char* kStale = "stale frames, which had waited for over half a second";
+
     /// What ModuleStatus::lost() of a subscriber calls frames that are not taken, each way once.
     static std::vector<const char*> refusals();
 
@@ -103,6 +108,8 @@ class FrameDecoder {
     SenderGuard::Verdict judge(const bot_core::images_t& images, std::uint32_t checksum);
     void choose_camera(const bot_core::images_t& images);
     std::pair<std::shared_ptr<const Frame>, SenderGuard::Verdict> take(const RawMessage& message);
+    bool is_stale(const RawMessage& message) const;
+    void lose_stale(const Frame& frame);
     void lose(const Subscriber& subscriber, const char* what);
     void deliver(const std::shared_ptr<const Frame>& frame);
 

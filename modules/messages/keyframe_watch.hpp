@@ -24,6 +24,7 @@ class KeyframeWatch {
         : status_(status), consequence_(std::move(consequence)) {}
 
     void came(int id, int previous_id, std::int64_t utime);
+    bool has(int id) const { return came_.contains(id); }
     void named(const KeyframeTrajectory& trajectory, std::int64_t now_us);
     /// Remarks on what is missing once that has been so for a second: a keyframe may come after the
     /// trajectory that names it.

@@ -14,6 +14,7 @@ namespace planemap::messages {
 
 namespace {
 constexpr std::int64_t kPeriodUs = 1000000;
+constexpr std::int64_t kOldest_us = 60000000;  // older, a frame was not taken just now
 constexpr std::int64_t kAnswerUs = 3000000;  // by then something should have come out of what came in
 }  // namespace
 
@@ -46,6 +47,14 @@ Bus::Handler ModuleStatus::guard(Bus::Handler handler) {
 void ModuleStatus::received(std::optional<std::uint32_t> seq) {
     ++received_;
     if (seq) seqs_.add(*seq);
+}
+
+void ModuleStatus::published(std::int64_t frame_utime, std::int64_t now_us) {
+    published();
+    const std::int64_t age_us = now_us - frame_utime;
+    if (age_us < 0 || age_us > kOldest_us) return;
+    age_ms_.add(1e-3 * static_cast<double>(age_us));
+    window_age_ms_.add(1e-3 * static_cast<double>(age_us));
 }
 
 void ModuleStatus::count_loss(const std::string& what, std::int64_t count) {
@@ -123,7 +132,9 @@ module_status_t ModuleStatus::message(std::int64_t now_us, bool stopped) const {
     m.utime = now_us;
     m.seq = seq_;
     m.session = 0;
-    m.age_median_ms = m.age_p95_ms = -1;
+    const Histogram& age = window_age_ms_.count() > 0 ? window_age_ms_ : age_ms_;
+    m.age_median_ms = age.count() > 0 ? static_cast<float>(age.median()) : -1;
+    m.age_p95_ms = age.count() > 0 ? static_cast<float>(age.p95()) : -1;
     m.module = module_;
     m.text = full_text();
     m.rate_hz = seconds > 0 ? static_cast<double>(inputs) / seconds : 0;
@@ -137,6 +148,11 @@ module_status_t ModuleStatus::message(std::int64_t now_us, bool stopped) const {
     m.gaps = seqs_.missed();
     m.state = stopped ? std::int8_t{module_status_t::STOPPED} : state(now_us);
     return m;
+}
+
+void ModuleStatus::announce(Bus& bus, std::int64_t now_us) {
+    window_start_us_ = now_us - kPeriodUs;
+    publish_if_due(bus, now_us);
 }
 
 bool ModuleStatus::publish_if_due(Bus& bus, std::int64_t now_us, bool stopped) {
@@ -156,7 +172,7 @@ bool ModuleStatus::publish_if_due(Bus& bus, std::int64_t now_us, bool stopped) {
     window_unusable_ = dropped_ + decode_errors_;
     window_received_ = received_;
     window_published_ = published_;
-    window_ms_ = Histogram();
+    window_ms_ = window_age_ms_ = Histogram();
     return true;
 }
 
@@ -175,7 +191,12 @@ std::string ModuleStatus::line() const {
         static_cast<double>(last_.latency_p95_ms), static_cast<long long>(received_),
         static_cast<long long>(published_), static_cast<long long>(dropped_),
         static_cast<long long>(decode_errors_), static_cast<long long>(seqs_.missed()));
-    const std::string text = full_text();
+    std::string text = full_text();
+    if (age_ms_.count() > 0) {
+        char age[80];
+        std::snprintf(age, sizeof(age), "%.0f ms (p95 %.0f) after the shutter", age_ms_.median(), age_ms_.p95());
+        text = age + (text.empty() ? "" : "; " + text);
+    }
     return text.empty() ? line : std::string(line) + "; " + text;
 }
 

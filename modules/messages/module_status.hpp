@@ -34,6 +34,9 @@ class ModuleStatus {
     /// Inputs that are dropped count too.
     void received(std::optional<std::uint32_t> seq = std::nullopt);
     void published() { ++published_; }
+    /// The same of an output whose frame is of this time: how old it is now is the module's age, from the shutter to
+    /// here. Stamps that are not of the wall clock (a recording's) tell none.
+    void published(std::int64_t frame_utime, std::int64_t now_us);
     void dropped(std::int64_t count = 1) { dropped_ += count; }
     void decode_error() { ++decode_errors_; }
     /// Something of an input was not used, e.g. lost("regions out of range", 3). `what` is one of a fixed few
@@ -77,12 +80,17 @@ class ModuleStatus {
     /// Milliseconds of work for each input since the start.
     const Histogram& work_ms() const { return work_ms_; }
     /// The same in CPU time of the thread that worked: what a busy machine does not lengthen.
+    /// Milliseconds from frames' utime to what was published of them, since the start; see published().
+    const Histogram& age_ms() const { return age_ms_; }
     const Histogram& work_cpu_ms() const { return work_cpu_ms_; }
 
     /// Why the module gave nothing, though it was given something: none of its inputs could be used. Empty
     /// if it is not so.
     std::string failure() const;
 
+
+    /// Publishes at once, as the first message.
+    void announce(Bus& bus, std::int64_t now_us);
     /// Publishes when a second has passed since the last time; `stopped` publishes at once, as the last
     /// message. Returns true if it did.
     bool publish_if_due(Bus& bus, std::int64_t now_us, bool stopped = false);
@@ -105,7 +113,7 @@ class ModuleStatus {
     std::map<std::string, Remark> remarks_;  ///< by kind
     bool is_connected_ = true;               ///< the bus, at the last status
     SeqCounter seqs_;
-    Histogram work_ms_, work_cpu_ms_, window_ms_;
+    Histogram work_ms_, work_cpu_ms_, window_ms_, age_ms_, window_age_ms_;
     // Since the last status.
     std::int64_t window_start_us_ = 0, window_received_ = 0, window_published_ = 0, window_unusable_ = 0;
     std::int64_t unanswered_since_us_ = 0;  ///< inputs came since then, and nothing left; 0: none

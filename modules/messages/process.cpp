@@ -13,6 +13,7 @@
 #include <stdexcept>
 
 #include "messages/interrupt.hpp"
+#include "messages/session.hpp"
 
 namespace planemap::messages {
 
@@ -43,6 +44,7 @@ constexpr int kQuietMs = 20;               // without a message: none waits
 
 void run_loop(Shell& shell, Bus& bus) {
     std::int64_t last_line = now_us();
+    shell.status().announce(bus, last_line);
     while (!stop_requested() && !bus.ended()) {
         const int wait_ms = shell.poll();
         if (wait_ms < 0) break;
@@ -141,6 +143,8 @@ Process::Process(std::string module, const std::string& description)
     flags_.add("channel-prefix", channel_prefix_,
                "Begins the name of every channel, for two cameras or robots on one bus; all modules of a "
                "session are given the same");
+    flags_.add("state", state_,
+               "Folder for what the module goes on with when it is started again; without one it starts anew");
     flags_.add("v,verbose", verbose_, "Log more");
 }
 
@@ -149,8 +153,9 @@ int Process::run(int argc, char** argv, const std::function<std::unique_ptr<Shel
         start_logging(program_, verbose_);
         catch_stop_signals();
         Bus bus(lcm_url_, channel_prefix_);
-        const std::unique_ptr<Shell> shell = make_shell(bus);
         require_shared(bus);
+        if (!state_.empty()) bus.go_on_as(session_with_state(state_, module_));
+        const std::unique_ptr<Shell> shell = make_shell(bus);
         if (bus.connected())
             spdlog::info("on {}{}", bus.url(),
                          channel_prefix_.empty() ? "" : ", channels " + channel_prefix_ + "*");

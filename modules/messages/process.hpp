@@ -2,6 +2,7 @@
 // What every planemap process does alike: flags, a bus, status once a second, a clean stop.
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
@@ -57,6 +58,10 @@ class Process {
 
     /// For the module's own flags.
     Flags& flags() { return flags_; }
+    /// Folder that the module keeps its state in (--state); empty: it keeps none.
+    const std::filesystem::path& state() const { return state_; }
+    /// The module's file in it; empty without.
+    std::filesystem::path journal() const { return state_.empty() ? state_ : state_ / (module_ + ".journal"); }
     /// Parses flags, opens the bus, makes the shell and runs it until it is done or a signal comes.
     /// Returns the exit code: 0 after a clean stop, 1 for an error (one line on stderr), 2 for wrong flags.
     int run(int argc, char** argv, const std::function<std::unique_ptr<Shell>(Bus&)>& make_shell);
@@ -65,6 +70,7 @@ class Process {
     std::string module_, program_;
     Flags flags_;
     std::string lcm_url_, channel_prefix_;
+    std::filesystem::path state_;
     bool verbose_ = false;
 };
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "core/stamp.hpp"
+#include "messages/session.hpp"
 
 namespace planemap::messages {
 
@@ -54,6 +55,13 @@ std::uint32_t checksum_of(std::span<const std::uint8_t> bytes) {
     return libdeflate_crc32(0, bytes.data(), bytes.size());
 }
 
+/// Whether the message is of a process that goes on with the state of the one that is followed, which is no more then.
+bool SenderGuard::is_started_again(const Message& message) const {
+    const auto &before = followed_->last.sender, &now = message.sender;
+    return before && now && *before != *now &&
+           succeeds(static_cast<std::int64_t>(*now), static_cast<std::int64_t>(*before));
+}
+
 bool SenderGuard::same_sender(const Message& a, const Message& b) const {
     if (a.sender || b.sender) return a.sender == b.sender;
     return !a.kind || !b.kind || *a.kind == *b.kind;
@@ -90,6 +98,7 @@ Verdict SenderGuard::judge(const Message& message) {
     const auto is_of = [&](const Stream& stream) {
         return same_sender(stream.last, message) && goes_on(stream, message);
     };
+    if (is_started_again(message)) return switch_to({message, {}});
     if (is_of(*followed_)) return in_order(message);
     const auto found = std::find_if(others_.begin(), others_.end(), is_of);
     if (found == others_.end()) {
@@ -169,7 +178,9 @@ bool SenderGuard::takes_over(const Stream& stream) const {
 Verdict SenderGuard::switch_to(const Stream& stream) {
     const auto elapsed = elapsed_us(followed_->last, stream.last);
     const bool one = known_as_one(followed_->last, stream.last);
-    if ((stream.interleaved && !one) || !same_sender(followed_->last, stream.last)) {
+    if (is_started_again(stream.last)) {
+        news_ = "the sender on " + channel_ + " was started again; going on with it";
+    } else if ((stream.interleaved && !one) || !same_sender(followed_->last, stream.last)) {
         news_ = "the first sender on " + channel_ + " has been silent for " + seconds_text(kSilence_us) +
                 "; another one is followed from here on";
     } else if (elapsed && *elapsed < 0) {

@@ -14,6 +14,8 @@ namespace planemap::messages {
 /// Follows one sender on a channel: the first. Another one is named and ignored until the first has been
 /// silent for kSilence_us of the other's time stamps. Time comes from the messages, so that a replay repeats.
 ///
+/// One that was started again and goes on with its state (messages/session.hpp) is followed at once.
+///
 /// Two messages are of different senders when they say different sender ids or are of different kinds.
 /// Without ids, those that jump away from the stream and go on from there are another stream: of the same
 /// sender after a pause, or one that started again, if nothing of the first comes in between; else of another
@@ -59,6 +61,7 @@ class SenderGuard {
         bool interleaved = false;                 ///< the one followed went on after this one had begun
     };
 
+    bool is_started_again(const Message& message) const;
     bool same_sender(const Message& a, const Message& b) const;
     bool goes_on(const Stream& stream, const Message& message) const;
     std::int64_t step_us() const;

@@ -5,18 +5,35 @@
 
 namespace planemap::messages {
 
-bool StreamGuard::admits(std::int64_t session, std::int32_t seq, std::optional<std::int64_t> utime,
-                         std::span<const std::uint8_t> bytes) {
-    using Verdict = SenderGuard::Verdict;
+namespace {
+
+SenderGuard::Message told(std::int64_t session, std::int32_t seq, std::optional<std::int64_t> utime,
+                          std::span<const std::uint8_t> bytes) {
     SenderGuard::Message message;
     if (session != 0) message.sender = static_cast<std::uint64_t>(session);
     message.seq = static_cast<std::uint32_t>(seq);
     message.utime = utime;
     message.checksum = checksum_of(bytes);
+    return message;
+}
+
+}  // namespace
+
+void StreamGuard::resume(std::int64_t session, std::int32_t seq, std::optional<std::int64_t> utime,
+                         std::span<const std::uint8_t> bytes) {
+    guard_ = SenderGuard(channel_);
+    guard_.judge(told(session, seq, utime, bytes));
+}
+
+bool StreamGuard::admits(std::int64_t session, std::int32_t seq, std::optional<std::int64_t> utime,
+                         std::span<const std::uint8_t> bytes) {
+    using Verdict = SenderGuard::Verdict;
+    const SenderGuard::Message message = told(session, seq, utime, bytes);
     const Verdict verdict = guard_.judge(message);
     if (!guard_.news().empty()) spdlog::warn("{}", guard_.news());
     if (verdict == Verdict::kRepeated) {
-        if (main_stream_) status_.lost(things_ + " that came twice");
+        // A sender with a session sends on purpose what another module missed.
+        if (main_stream_ && session == 0) status_.lost(things_ + " that came twice");
         return false;
     }
     if (verdict == Verdict::kLate && !main_stream_) {

@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <planemap/map_size_t.hpp>
+#include <planemap/trajectory_t.hpp>
 #include <thread>
 #include <utility>
 
+#include "core/files.hpp"
 #include "messages/channels.hpp"
 #include "messages/convert.hpp"
 #include "messages/decode.hpp"
@@ -29,12 +31,18 @@ constexpr std::size_t kMaxWaiting = 256;
 }  // namespace
 
 OctomapShell::OctomapShell(messages::Bus& bus, std::shared_ptr<messages::FrameDecoder> decoder,
-                           const OctomapOptions& options, Building building)
+                           const OctomapOptions& options, Building building, const OctomapFiles& files)
     : bus_(bus),
       decoder_(std::move(decoder)),
       builder_(std::make_unique<OctomapBuilder>(options)),
-      resolution_m_(options.resolution_m) {
+      resolution_m_(options.resolution_m),
+      max_keyframes_(static_cast<std::size_t>(options.max_keyframes)),
+      output_(files.output) {
     if (building == Building::kInBackground) worker_ = std::make_unique<OctomapWorker>(*builder_);
+    if (!files.journal.empty()) {
+        journal_ = std::make_unique<messages::Journal>(files.journal);
+        resume();
+    }
     decoder_->subscribe(
         status_, 8, [this](const auto& frame) { on_frame(frame); }, false);
     bus_.subscribe(messages::channels::kKeyframe,
@@ -68,7 +76,10 @@ void OctomapShell::drop(const char* reason, std::int64_t count) {
 
 void OctomapShell::on_keyframe(const messages::RawMessage& message) {
     const keyframe_t received = messages::decode<keyframe_t>(message.bytes);
+    // Odometry sends the last ones again when a module was started again.
+    if (received.session != 0 && received.session == keyframes_of_ && watch_.has(received.id)) return;
     if (!keyframe_guard_.admits(received.session, received.seq, received.utime, message.bytes)) return;
+    keyframes_of_ = received.session;
     watch_.came(received.id, received.previous_id, received.utime);
     const auto recent = std::find_if(recent_.begin(), recent_.end(),
                                      [&](const Recent& r) { return r.frame->utime() == received.utime; });
@@ -78,6 +89,7 @@ void OctomapShell::on_keyframe(const messages::RawMessage& message) {
         const messages::ModuleStatus::Work work(status_);
         keyframe = {nullptr, std::make_shared<StoredScan>(recent->frame->depth(), recent->frame->camera())};
     }
+    if (journal_) keep(*recent->frame, message.bytes);
     waiting_[received.id] = std::move(keyframe);
     if (waiting_.size() > kMaxWaiting) {
         waiting_.erase(waiting_.begin());
@@ -89,7 +101,14 @@ void OctomapShell::on_trajectory(const messages::RawMessage& message) {
     const trajectory_t received = messages::decode<trajectory_t>(message.bytes);
     const KeyframeTrajectory trajectory = messages::from_message(received);
     if (!trajectory_guard_.admits(received.session, received.seq, std::nullopt, message.bytes)) return;
+    if (journal_) trajectory_.assign(message.bytes.begin(), message.bytes.end());
+    take(trajectory);
+}
+
+void OctomapShell::take(const KeyframeTrajectory& trajectory) {
     watch_.named(trajectory, messages::now_us());
+    named_.clear();
+    for (const KeyframePose& pose : trajectory.keyframes) named_.insert(pose.id);
     last_utime_ = trajectory.utime;
     last_revision_ = trajectory.revision;
     if (!worker_) builder_->update(trajectory);
@@ -102,6 +121,106 @@ void OctomapShell::on_trajectory(const messages::RawMessage& message) {
     }
     if (worker_) worker_->update(trajectory);
     unpublished_ = true;
+}
+
+/// Takes keyframes, their depth and their poses from the process before.
+void OctomapShell::resume() {
+    for (const std::string& complaint : journal_->complaints()) spdlog::warn("octomap: {}", complaint);
+    messages::Bus bus("memq://");
+    messages::FrameDecoder decoder(bus);
+    std::shared_ptr<const messages::Frame> frame;
+    std::vector<std::uint8_t> trajectory, newest;
+    journal_->replay([&](const messages::LogEvent& event) {
+        try {
+            if (event.channel == messages::channels::kTrajectory) {
+                trajectory = event.bytes;
+            } else if (event.channel == messages::channels::kCameraInfo) {
+                bus.publish_bytes(event.channel, event.bytes);
+                bus.drain();
+            } else if (event.channel == messages::channels::kFrame) {
+                frame = decoder.decode({event.channel, event.bytes, event.utime});
+            } else if (frame) {
+                const auto received = messages::decode<keyframe_t>(event.bytes);
+                if (received.utime != frame->utime()) return;
+                watch_.came(received.id, received.previous_id, received.utime);
+                waiting_[received.id] = {worker_ ? nullptr : frame,
+                                         std::make_shared<StoredScan>(frame->depth(), frame->camera())};
+                newest = event.bytes;
+            }
+        } catch (const std::exception& error) {
+            bus_.complaints().add(journal_->file().string() + ": a keyframe left out: " + error.what());
+        }
+    });
+    if (!newest.empty()) {
+        const auto last = messages::decode<keyframe_t>(newest);
+        keyframe_guard_.resume(last.session, last.seq, last.utime, newest);
+        keyframes_of_ = last.session;
+    }
+    if (trajectory.empty()) return;
+    const auto last = messages::decode<trajectory_t>(trajectory);
+    trajectory_guard_.resume(last.session, last.seq, std::nullopt, trajectory);
+    spdlog::info("octomap: goes on with {} keyframes of {}", waiting_.size(), journal_->file().string());
+    take(messages::from_message(last));
+}
+
+/// A keyframe's depth, and the keyframe.
+void OctomapShell::keep(const messages::Frame& frame, std::span<const std::uint8_t> bytes) {
+    if (!journal_camera_ || !(*journal_camera_ == frame.camera())) {
+        journal_camera_ = frame.camera();
+        journal_->add(messages::channels::kCameraInfo,
+                      messages::to_bytes(messages::to_message(frame.camera(), frame.utime(), 0, bus_.session())));
+    }
+    bot_core::images_t images;
+    images.utime = frame.utime();
+    images.n_images = 1;
+    images.image_types.push_back(bot_core::images_t::DEPTH_MM_ZIPPED);
+    images.images.push_back(
+        messages::depth_image_message(frame.depth(), frame.utime(), messages::DepthEncoding::kZipped));
+    journal_->add(messages::channels::kFrame, messages::to_bytes(images));
+    journal_->add(messages::channels::kKeyframe, bytes);
+}
+
+void OctomapShell::save_trajectory() {
+    if (trajectory_.empty()) return;
+    journal_->add(messages::channels::kTrajectory, trajectory_);
+    trajectory_.clear();
+    saved_us_ = messages::now_us();
+}
+
+/// Once a second: poses, of which a kill loses no more; now and then: without the keyframes that went for newer ones.
+void OctomapShell::tend_journal() {
+    constexpr std::int64_t kSavePeriod_us = 1000000;
+    if (messages::now_us() - saved_us_ >= kSavePeriod_us) save_trajectory();
+    if (journal_->is_due_to_compact() && !named_.empty()) {
+        save_trajectory();
+        std::set<int> kept = named_;
+        while (kept.size() > max_keyframes_) kept.erase(kept.begin());
+        const int newest = *named_.rbegin();
+        std::set<std::int64_t> frames;  // of the keyframes that stay, by utime
+        std::int64_t last_trajectory = -1;
+        const auto stays = [&](const keyframe_t& keyframe) { return keyframe.id > newest || kept.contains(keyframe.id); };
+        journal_->replay([&](const messages::LogEvent& event) {
+            if (event.channel == messages::channels::kTrajectory) last_trajectory = event.number;
+            if (event.channel != messages::channels::kKeyframe) return;
+            const auto keyframe = messages::decode<keyframe_t>(event.bytes);
+            if (stays(keyframe)) frames.insert(keyframe.utime);
+        });
+        journal_->compact([&](const messages::LogEvent& event) {
+            if (event.channel == messages::channels::kTrajectory) return event.number == last_trajectory;
+            if (event.channel == messages::channels::kCameraInfo) return true;
+            if (event.channel == messages::channels::kFrame)
+                return frames.contains(messages::decode<bot_core::images_t>(event.bytes).utime);
+            return stays(messages::decode<keyframe_t>(event.bytes));
+        });
+    }
+    if (const auto news = journal_->news()) status_.remark("journal", *news);
+}
+
+/// octomap.bt, as planemap-run leaves it, beside the map.
+void OctomapShell::write_tree() {
+    if (output_.empty() || builder_->keyframes_in_tree() == 0) return;
+    std::filesystem::create_directories(output_);
+    write_file(output_ / "octomap.bt", builder_->bt());
 }
 
 void OctomapShell::add(int id, const Waiting& keyframe, const Pose& world_from_camera) {
@@ -122,6 +241,7 @@ void OctomapShell::add(int id, const Waiting& keyframe, const Pose& world_from_c
 int OctomapShell::poll() {
     constexpr int kIdleMs = 100;
     watch_.tell(messages::now_us());
+    if (journal_) tend_journal();
     if (worker_) {
         if (const auto state = worker_->newer_state()) publish(*state);
     } else if (unpublished_ && messages::now_us() - last_publish_us_ >= kPublishPeriodUs) {
@@ -133,10 +253,15 @@ int OctomapShell::poll() {
 void OctomapShell::finish() {
     drop("keyframes that never got a pose", static_cast<std::int64_t>(waiting_.size()));
     waiting_.clear();
-    if (!worker_) return publish(state());
+    if (journal_) save_trajectory();
+    if (!worker_) {
+        publish(state());
+        return write_tree();
+    }
     worker_->finish(kPatience);
     const auto state = worker_->newer_state();
     if (state) publish(*state);
+    write_tree();
     if (!state || !state->is_up_to_date)
         spdlog::warn("octomap: stopped while some keyframes were not where the last trajectory has them");
 }

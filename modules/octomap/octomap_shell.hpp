@@ -2,13 +2,18 @@
 #pragma once
 
 #include <deque>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
+#include <planemap/keyframe_t.hpp>
+#include <set>
+#include <vector>
 
 #include "core/keyframe.hpp"
 #include "messages/channels.hpp"
 #include "messages/frame_decoder.hpp"
+#include "messages/journal.hpp"
 #include "messages/keyframe_watch.hpp"
 #include "messages/process.hpp"
 #include "messages/stream_guard.hpp"
@@ -23,12 +28,19 @@ enum class Building {
     kInBackground,  ///< on another thread; messages do not wait
 };
 
+/// Where an OctoMap is kept; empty: nowhere.
+struct OctomapFiles {
+    std::filesystem::path output;   ///< folder that octomap.bt is written to at the end
+    std::filesystem::path journal;  ///< keyframes' depth and poses, for a process that is started again
+};
+
 /// The depth of keyframes (OPENNI_FRAME, PLANEMAP_KEYFRAME) at their poses (PLANEMAP_TRAJECTORY) into an
 /// OctoMap; its size on PLANEMAP_OCTOMAP_SIZE.
 class OctomapShell : public messages::Shell {
   public:
     OctomapShell(messages::Bus& bus, std::shared_ptr<messages::FrameDecoder> decoder,
-                 const OctomapOptions& options, Building building = Building::kInHandler);
+                 const OctomapOptions& options, Building building = Building::kInHandler,
+                 const OctomapFiles& files = {});
     ~OctomapShell() override;
 
     messages::ModuleStatus& status() override { return status_; }
@@ -56,6 +68,12 @@ class OctomapShell : public messages::Shell {
     void on_frame(const std::shared_ptr<const messages::Frame>& frame);
     void on_keyframe(const messages::RawMessage& message);
     void on_trajectory(const messages::RawMessage& message);
+    void take(const KeyframeTrajectory& trajectory);
+    void resume();
+    void keep(const messages::Frame& frame, std::span<const std::uint8_t> bytes);
+    void tend_journal();
+    void save_trajectory();
+    void write_tree();
     void add(int id, const Waiting& keyframe, const Pose& world_from_camera);
     void drop(const char* reason, std::int64_t count = 1);
     /// In the handler: the state with everything brought up to date.
@@ -72,8 +90,15 @@ class OctomapShell : public messages::Shell {
     messages::KeyframeWatch watch_{status_, "the OctoMap is incomplete"};
     std::deque<Recent> recent_;
     std::size_t recent_bytes_ = 0;
+    std::unique_ptr<messages::Journal> journal_;     ///< null without
+    std::optional<CameraInfo> journal_camera_;       ///< that the journal described last
+    std::vector<std::uint8_t> trajectory_;           ///< the last one, where the journal does not have it yet
+    std::set<int> named_;                            ///< keyframes of the last trajectory
+    std::int64_t saved_us_ = 0, keyframes_of_ = 0;   ///< wall clock of the last save; session of the last keyframe
     std::map<int, Waiting> waiting_;  ///< by keyframe id
     double resolution_m_;
+    std::size_t max_keyframes_;
+    std::filesystem::path output_;
     std::int64_t last_utime_ = 0, last_publish_us_ = 0;
     int last_revision_ = 0;
     std::size_t frozen_ = 0, refused_ = 0;  ///< as counted in the status

@@ -57,6 +57,12 @@ bool CameraMotion::is_plausible(const Pose& odom_from_camera, std::int64_t utime
            rotation_angle(moved) < reach * (1 + elapsed);
 }
 
+void CameraMotion::stand_at(const Pose& odom_from_camera) {
+    filter_.start(odom_from_camera);
+    pose_utime_ = 0;
+    lost_frames_ = 0;
+}
+
 void CameraMotion::start(std::int64_t utime) {
     filter_.start(filter_.odom_from_camera());
     pose_utime_ = utime;

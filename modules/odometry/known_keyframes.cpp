@@ -16,6 +16,7 @@ constexpr int kThumbnailWidth = 40, kThumbnailHeight = 30;
 constexpr std::size_t kNewest = 10;  // never dropped
 
 double likeness(const std::vector<float>& a, const std::vector<float>& b) {
+    if (a.size() != b.size()) return -1;
     return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
 }
 
@@ -67,6 +68,7 @@ std::vector<const KnownKeyframe*> KnownKeyframes::candidates(const GrayImage& gr
     for (const KnownKeyframe& keyframe : keyframes_)
         ranked.emplace_back(&keyframe == &keyframes_.back() ? 2.0 : likeness(thumbnail, keyframe.thumbnail),
                             &keyframe);
+    std::reverse(ranked.begin(), ranked.end());
     std::stable_sort(ranked.begin(), ranked.end(),
                      [](const auto& a, const auto& b) { return a.first > b.first; });
     std::vector<const KnownKeyframe*> best;

@@ -17,7 +17,7 @@ struct KnownKeyframe {
     int id = -1;
     Pose odom_from_keyframe = Pose::Identity();
     std::vector<Feature> features;
-    std::vector<float> thumbnail;
+    std::vector<float> thumbnail;  ///< empty: its image is not known any more
 };
 
 /// A bounded set of keyframes. When it is full, of the two keyframes nearest to each other (the newest ten
@@ -29,7 +29,7 @@ class KnownKeyframes {
     void add(KnownKeyframe keyframe);
     void clear() { keyframes_.clear(); }
 
-    /// The newest keyframe and those most like the image, at most `count`; pointers until the next add().
+    /// The newest keyframe and those most like the image (of those whose image is not known the newest first), at most `count`; pointers until the next add().
     std::vector<const KnownKeyframe*> candidates(const GrayImage& gray, int count) const;
 
   private:

@@ -11,6 +11,7 @@ int main(int argc, char** argv) {
     process.flags().add(options_of(options));
     return process.run(argc, argv, [&](planemap::messages::Bus& bus) {
         return std::make_unique<planemap::odometry::OdometryShell>(
-            bus, std::make_shared<planemap::messages::FrameDecoder>(bus, camera.read()), options);
+            bus, std::make_shared<planemap::messages::FrameDecoder>(bus, camera.read()), options,
+            process.journal());
     });
 }

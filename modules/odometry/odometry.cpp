@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "odometry/odometry.hpp"
 
+#include <algorithm>
+
 #include "odometry/camera_motion.hpp"
 #include "odometry/keyframe_choice.hpp"
 #include "odometry/keyframe_making.hpp"
@@ -22,8 +24,12 @@ class Odometry::State {
           method_(make_method(options)) {}
 
     OdometryResult process(const OdometryFrame& input);
+    void resume(std::span<const Keyframe> keyframes);
 
   private:
+    /// Ids that the process before may have given without having remembered them.
+    static constexpr int kIdsLeftOut = 100;
+    OdometryResult find_again(PreparedFrame& frame);
     OdometryResult restart(PreparedFrame& frame);
     OdometryResult lose(PreparedFrame& frame);
     OdometryResult follow(PreparedFrame& frame, Located& located);
@@ -37,6 +43,7 @@ class Odometry::State {
     CameraInfo camera_;
     std::int64_t utime_ = 0;  ///< of the last frame
     int next_id_ = 0;
+    bool resumed_ = false;  ///< and no place was found yet
     Readout readout_;
     CameraMotion motion_;
     LocalKeyframes keyframes_;
@@ -57,13 +64,53 @@ OdometryResult Odometry::State::process(const OdometryFrame& input) {
         readout_ = {};
     }
     OdometryResult result;
-    if (starts) {
+    if (resumed_ && !other_camera) {
+        result = find_again(frame);
+    } else if (starts) {
         result = restart(frame);
     } else {
         std::optional<Located> located = method_->locate(frame, {motion_, keyframes_, relocaliser_});
         result = located ? follow(frame, *located) : lose(frame);
     }
     result.estimate.utime = result.estimate.pose_utime = input.utime;
+    return result;
+}
+
+void Odometry::State::resume(std::span<const Keyframe> keyframes) {
+    if (keyframes.empty()) return;
+    for (const Keyframe& keyframe : keyframes) {
+        relocaliser_.add(keyframe);
+        next_id_ = std::max(next_id_, keyframe.id + 1 + kIdsLeftOut);
+    }
+    motion_.stand_at(keyframes.back().odom_from_camera);
+    resumed_ = true;
+}
+
+/// After resume(): lost, until a place is known again; after max_lost_frames a part of its own begins.
+OdometryResult Odometry::State::find_again(PreparedFrame& frame) {
+    OdometryResult result;
+    std::optional<Located> located;
+    if (frame.gray) located = relocaliser_.locate(frame, motion_, keyframes_);
+    if (!located) {
+        motion_.lose();
+        resumed_ = motion_.lost_frames() < options_.max_lost_frames;
+        return resumed_ ? result : restart(frame);
+    }
+    motion_.follow(frame.utime, *located);
+    method_->begin(frame);
+    camera_ = *frame.camera;
+    const FrameMotion motion{motion_.velocity(), frame.color_offset_s};
+    LocalKeyframe local = make_local_keyframe(options_, frame, motion);
+    if (!can_be_tracked_against(local, options_.min_inliers)) return result;
+    resumed_ = false;
+    Keyframe keyframe = add_keyframe(frame, std::move(local), located->odom_from_camera(), motion);
+    keyframe.previous_id = located->keyframe_id;
+    keyframe.previous_from_camera = located->keyframe_from_camera();
+    keyframe.covariance = located->covariance();
+    result.estimate = estimate_at(keyframe);
+    result.estimate.features = located->track.tried;
+    result.estimate.inliers = located->track.inliers;
+    result.keyframe = std::move(keyframe);
     return result;
 }
 
@@ -177,6 +224,10 @@ Odometry::Odometry(const OdometryOptions& options) {
 Odometry::~Odometry() = default;
 Odometry::Odometry(Odometry&&) noexcept = default;
 Odometry& Odometry::operator=(Odometry&&) noexcept = default;
+
+void Odometry::resume(std::span<const Keyframe> keyframes) {
+    state_->resume(keyframes);
+}
 
 OdometryResult Odometry::process(const OdometryFrame& frame) {
     return state_->process(frame);

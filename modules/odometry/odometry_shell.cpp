@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "odometry/odometry_shell.hpp"
 
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
+#include <planemap/module_status_t.hpp>
 #include <utility>
 
 #include "messages/channels.hpp"
@@ -31,8 +34,12 @@ const char* fault_of_depth(const messages::Frame& frame) {
 }  // namespace
 
 OdometryShell::OdometryShell(messages::Bus& bus, std::shared_ptr<messages::FrameDecoder> decoder,
-                             const OdometryOptions& options)
+                             const OdometryOptions& options, const std::filesystem::path& journal)
     : bus_(bus), decoder_(std::move(decoder)), odometry_(options) {
+    if (!journal.empty()) {
+        journal_ = std::make_unique<messages::Journal>(journal);
+        resume();
+    }
     decoder_->subscribe(status_, 8, [this](auto frame) { on_frame(std::move(frame)); });
     bus_.subscribe(messages::channels::kRegions,
                    status_.guard([this](const messages::RawMessage& m) { on_regions(m); }), 8);
@@ -41,6 +48,54 @@ OdometryShell::OdometryShell(messages::Bus& bus, std::shared_ptr<messages::Frame
         messages::channels::kTrajectory, [this](const messages::RawMessage& m) { on_trajectory(m); }, 1);
     bus_.subscribe(
         messages::channels::kMap, [this](const messages::RawMessage& m) { on_map(m); }, 1);
+    if (!bus_.is_network()) return;
+    for (const char* module : {"GRAPH", "MAP", "OCTOMAP"})
+        bus_.subscribe(std::string(messages::channels::kStatusPrefix) + module,
+                       [this](const messages::RawMessage& m) { on_status(m); });
+}
+
+/// Takes the keyframes that the process before made.
+void OdometryShell::resume() {
+    for (const std::string& complaint : journal_->complaints()) spdlog::warn("odometry: {}", complaint);
+    std::vector<Keyframe> keyframes;
+    journal_->replay([&](const messages::LogEvent& event) {
+        try {
+            keyframes.push_back(messages::from_message(messages::decode<keyframe_t>(event.bytes)));
+        } catch (const messages::MessageError& error) {
+            bus_.complaints().add(journal_->file().string() + ": a keyframe left out: " + error.what());
+        }
+    });
+    odometry_.resume(keyframes);
+    if (!keyframes.empty())
+        spdlog::info("odometry: knows {} keyframes of {}; lost until it finds a place that they saw", keyframes.size(),
+                     journal_->file().string());
+}
+
+/// A module that was started again has missed what was sent meanwhile.
+void OdometryShell::on_status(const messages::RawMessage& message) {
+    const auto status = messages::decode<module_status_t>(message.bytes);
+    if (status.state == module_status_t::STOPPED) return;
+    const auto [known, is_first] = sessions_.try_emplace(status.module, status.session);
+    if (is_first || known->second == status.session) return;
+    known->second = status.session;
+    send_again();
+}
+
+void OdometryShell::send_again() {
+    for (const Sent& sent : sent_)
+        if (Clock::now() - sent.at < kSendAgain) bus_.publish_bytes(messages::channels::kKeyframe, sent.bytes);
+}
+
+void OdometryShell::publish(const Keyframe& keyframe) {
+    constexpr std::size_t kMostSent = 32;
+    const keyframe_t message = messages::to_message(keyframe, keyframe_seq_++, bus_.session());
+    std::vector<std::uint8_t> bytes = messages::to_bytes(message);
+    if (journal_) journal_->add(messages::channels::kKeyframe, bytes);  // first: an id that is known is given once
+    bus_.publish_bytes(messages::channels::kKeyframe, bytes);
+    messages::remark_new_part(status_, keyframe.id, keyframe.previous_id, keyframe.utime);
+    if (!bus_.is_network()) return;
+    sent_.push_back({Clock::now(), std::move(bytes)});
+    if (sent_.size() > kMostSent) sent_.pop_front();
 }
 
 void OdometryShell::on_frame(std::shared_ptr<const messages::Frame> frame) {
@@ -131,6 +186,7 @@ void OdometryShell::process_front() {
 
 int OdometryShell::poll() {
     constexpr int kIdle_ms = 100, kWaiting_ms = 20;
+    if (journal_) tend_journal();
     // While messages come one after the other, the regions may be among those that the bus holds.
     const bool quiet = !std::exchange(heard_, false);
     if (quiet && !waiting_.empty() && Clock::now() - waiting_.front().since > kMaxWait) {
@@ -139,6 +195,17 @@ int OdometryShell::poll() {
         process_ready(missing_ >= kMaxMissing ? 0 : kMaxWaiting);
     }
     return waiting_.empty() ? kIdle_ms : kWaiting_ms;
+}
+
+/// As many keyframes as are looked at for a known place, and no more, are worth keeping.
+void OdometryShell::tend_journal() {
+    if (journal_->is_due_to_compact()) {
+        constexpr std::int64_t kKept = 200;
+        std::int64_t last = 0;
+        journal_->replay([&](const messages::LogEvent& event) { last = event.number; });
+        journal_->compact([&](const messages::LogEvent& event) { return event.number > last - kKept; });
+    }
+    if (const auto news = journal_->news()) status_.remark("journal", *news);
 }
 
 void OdometryShell::process(const Waiting& input) {
@@ -174,11 +241,9 @@ void OdometryShell::process(const Waiting& input) {
     if (result.estimate.status != TrackingStatus::kLost) publish_body(result.estimate, frame.camera());
     if (const auto& keyframe = result.keyframe) {
         if (!first_keyframe_) first_keyframe_ = {keyframe->id, keyframe->utime, keyframe->odom_from_camera};
-        bus_.publish(messages::channels::kKeyframe,
-                     messages::to_message(*keyframe, keyframe_seq_++, bus_.session()));
-        messages::remark_new_part(status_, keyframe->id, keyframe->previous_id, keyframe->utime);
+        publish(*keyframe);
     }
-    status_.published();
+    status_.published(result.estimate.utime, messages::now_us());
     const bool is_lost = result.estimate.status == TrackingStatus::kLost;
     const char* const fault = is_lost ? fault_of_depth(frame) : nullptr;
     if (fault != nullptr) status_.lost(fault);

@@ -3,10 +3,13 @@
 
 #include <chrono>
 #include <deque>
+#include <filesystem>
+#include <map>
 #include <memory>
 
 #include "messages/convert.hpp"
 #include "messages/frame_decoder.hpp"
+#include "messages/journal.hpp"
 #include "messages/process.hpp"
 #include "odometry/body_frame.hpp"
 #include "odometry/odometry.hpp"
@@ -19,10 +22,14 @@ namespace planemap::odometry {
 /// A frame waits for its regions until a later one's come, kMaxWaiting frames wait, or it has waited for
 /// kMaxWait; then it goes on without. After kMaxMissing of these in a row (no segmentation on the bus) frames
 /// do not wait, until regions come again.
+///
+/// With a journal, which a path names, a process that is started again knows the keyframes that it made: their ids are not
+/// given again, and it is lost until it finds a place that they saw. The keyframes of the last seconds are sent again when
+/// a module that lives on them was started again.
 class OdometryShell : public messages::Shell {
   public:
     OdometryShell(messages::Bus& bus, std::shared_ptr<messages::FrameDecoder> decoder,
-                  const OdometryOptions& options);
+                  const OdometryOptions& options, const std::filesystem::path& journal = {});
 
     /// Reasons in status().losses() for frames that were not tracked; others had depth that could be used.
     static constexpr const char* kNoReadings = "untracked frames with hardly a depth reading in range";
@@ -39,6 +46,7 @@ class OdometryShell : public messages::Shell {
     /// More than the segmentation has in its queue and at work: it drops what comes beyond that.
     static constexpr std::size_t kMaxWaiting = 8;
     static constexpr std::chrono::milliseconds kMaxWait{500};
+    static constexpr std::chrono::seconds kSendAgain{5};  ///< keyframes of so long
     static constexpr int kMaxMissing = 10;  ///< frames in a row without regions, then nothing waits
 
     struct Waiting {
@@ -54,6 +62,11 @@ class OdometryShell : public messages::Shell {
     void process_ready(std::size_t max_waiting);
     void process_front();
     void process(const Waiting& input);
+    void resume();
+    void tend_journal();
+    void publish(const Keyframe& keyframe);
+    void on_status(const messages::RawMessage& message);
+    void send_again();
 
     messages::Bus& bus_;
     std::shared_ptr<messages::FrameDecoder> decoder_;
@@ -76,6 +89,13 @@ class OdometryShell : public messages::Shell {
     int missing_ = 0;                                ///< frames in a row that waited in vain
     bool heard_ = false;                             ///< a message came since the last poll()
     std::int32_t odometry_seq_ = 0, keyframe_seq_ = 0;
+    std::unique_ptr<messages::Journal> journal_;  ///< null without
+    struct Sent {
+        Clock::time_point at;
+        std::vector<std::uint8_t> bytes;
+    };
+    std::deque<Sent> sent_;                         ///< the last keyframes
+    std::map<std::string, std::int64_t> sessions_;  ///< of the modules that live on them
 };
 
 }  // namespace planemap::odometry

@@ -28,6 +28,10 @@ void Relocaliser::add(const Keyframe& keyframe, const PreparedFrame& frame) {
     known_.add({keyframe.id, keyframe.odom_from_camera, keyframe.features, make_thumbnail(*frame.gray)});
 }
 
+void Relocaliser::add(const Keyframe& keyframe) {
+    known_.add({keyframe.id, keyframe.odom_from_camera, keyframe.features, {}});
+}
+
 std::optional<Located> Relocaliser::locate(const PreparedFrame& frame, const CameraMotion& motion,
                                            const LocalKeyframes& local) const {
     const std::vector<Feature> features = describe(*frame.gray, *frame.depth, *frame.camera,

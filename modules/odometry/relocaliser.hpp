@@ -18,6 +18,8 @@ class Relocaliser {
 
     /// Remembers a keyframe. Precondition: the frame has colour.
     void add(const Keyframe& keyframe, const PreparedFrame& frame);
+    /// The same of one whose frame is gone.
+    void add(const Keyframe& keyframe);
     void clear() { known_.clear(); }
 
     /// The frame's descriptors against remembered keyframes, refined by flow where the keyframe is still a

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/frame_poses.hpp"
 #include "messages/channels.hpp"
 #include "messages/convert.hpp"
 #include "messages/decode.hpp"
@@ -53,8 +54,8 @@ const KeyframeTrajectory& Pipeline::keyframes() const {
 }
 
 Trajectory Pipeline::trajectory() const {
-    Trajectory trajectory;
     if (given_poses_) {
+        Trajectory trajectory;
         for (const OdometryEstimate& estimate : estimates_) {
             const auto pose = given_pose(given_poses_->poses(), estimate.pose_utime);
             if (pose) trajectory.push_back({estimate.pose_utime, *pose});
@@ -62,15 +63,7 @@ Trajectory Pipeline::trajectory() const {
         return trajectory;
     }
     const Pose world_from_odom = graph_ ? graph_->graph().trajectory().world_from_odom : Pose::Identity();
-    for (const OdometryEstimate& estimate : estimates_) {
-        if (estimate.status == TrackingStatus::kLost) continue;
-        const std::optional<Pose> keyframe = poses_.pose_of(estimate.keyframe_id);
-        trajectory.push_back({estimate.pose_utime, keyframe ? *keyframe * estimate.keyframe_from_camera
-                                                            : world_from_odom * estimate.odom_from_camera});
-    }
-    std::stable_sort(trajectory.begin(), trajectory.end(),
-                     [](const auto& a, const auto& b) { return a.utime < b.utime; });
-    return trajectory;
+    return place_frames(estimates_, poses_, world_from_odom);
 }
 
 std::optional<std::string> Pipeline::reason_lost() {

@@ -25,7 +25,7 @@ void SegmentationShell::on_frame(const messages::Frame& frame) {
             regions.regions.push_back(camera_from_depth * region);
     }
     bus_.publish(messages::channels::kRegions, messages::to_message(regions, seq_++, bus_.session()));
-    status_.published();
+    status_.published(regions.utime, messages::now_us());
     status_.set_text(std::to_string(regions.regions.size()) + " regions");
 }
 

@@ -55,6 +55,7 @@ int main(int argc, char** argv) {
     return process.run(argc, argv, [&](planemap::messages::Bus& bus) {
         source.camera = camera.read();
         if (check) source.device.record.clear();  // nothing is left behind
+        if (!process.state().empty()) options.position = process.state() / "sensor.position";
         auto shell = std::make_unique<planemap::sensor::SensorShell>(
             bus, planemap::sensor::open_source(input, source), options);
         if (check) {

@@ -5,8 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iomanip>
+#include <sstream>
 #include <stdexcept>
 
+#include "core/files.hpp"
+#include "core/stamp.hpp"
 #include "core/validation.hpp"
 #include "messages/channels.hpp"
 #include "messages/frame_decoder.hpp"
@@ -31,6 +37,7 @@ SensorShell::SensorShell(messages::Bus& bus, std::unique_ptr<FrameSource> source
     options_.validate();
     for (const std::string& note : source_->notes()) spdlog::warn("{}", note);
     if (options_.live) ahead_ = std::make_unique<ReadAhead>(source_);
+    if (!options_.position.empty()) resume();
     if (bus_.session() != 0) sender_ = static_cast<std::uint64_t>(bus_.session());
 }
 
@@ -100,6 +107,9 @@ SensorShell::Read SensorShell::read() {
     if (!next(result)) return Read::kNothing;
     ended_ = result.status == ReadResult::Status::kEnd;
     if (ended_) return Read::kEnd;
+    const bool is_frame = result.status == ReadResult::Status::kFrame;
+    if (is_frame && played_until_ && frame_.utime <= *played_until_) return Read::kNothing;
+    played_until_.reset();
     count(result);
     return result.status == ReadResult::Status::kFrame ? Read::kFrame : Read::kNothing;
 }
@@ -133,8 +143,11 @@ int SensorShell::poll() {
     }
     const std::int64_t early_us = due_us - messages::now_us();
     if (early_us > 500) return static_cast<int>(std::clamp<std::int64_t>(early_us / 1000, 1, 100));
+    played_utime_ = frame_.utime;
+    if (options_.restamp) restamp(options_.rate_hz > 0 || options_.speed > 0 ? due_us : messages::now_us());
     publish(frame_);
     pending_ = false;
+    keep_position();
     return 0;
 }
 
@@ -143,7 +156,42 @@ bool SensorShell::jumps() const {
     return frames_ > 0 && (frame_.utime < last_utime_ || frame_.utime - last_utime_ > kLongestPauseUs);
 }
 
+/// As if the frame had been taken at this time.
+void SensorShell::restamp(std::int64_t utime) {
+    if (frame_.color_utime != 0) frame_.color_utime += utime - frame_.utime;
+    frame_.utime = utime;
+}
+
+/// Reads how far the process before played the source.
+void SensorShell::resume() {
+    std::error_code ignored;
+    if (!std::filesystem::exists(options_.position, ignored)) return;
+    std::istringstream text(read_file(options_.position, 64));
+    std::int64_t utime = 0;
+    if (!(text >> utime)) {  // a power cut while it was written
+        spdlog::warn("{}: holds no time stamp; playing from the beginning", options_.position.string());
+        return;
+    }
+    played_until_ = utime;
+    spdlog::info("goes on after the frame at {}", seconds_text(utime));
+}
+
+/// Ten times a second, with the kernel: a kill loses no more.
+void SensorShell::keep_position() {
+    constexpr std::int64_t kKeepPeriod_us = 100000;
+    const std::int64_t now = messages::now_us();
+    if (options_.position.empty() || now - kept_wall_us_ < kKeepPeriod_us) return;
+    kept_wall_us_ = now;
+    std::ofstream(options_.position, std::ios::app).close();  // it is there
+    std::fstream file(options_.position, std::ios::in | std::ios::out);
+    file << std::setw(20) << played_utime_ << "\n";  // over the last one, in one write: never half of it
+    file.close();
+    if (!file) status_.lost("notes of how far the input was played");
+}
+
 void SensorShell::finish() {
+    std::error_code ignored;
+    if (ended_ && !options_.position.empty()) std::filesystem::remove(options_.position, ignored);
     if (!ended_) return;
     for (const std::string& complaint : source_->complaints()) spdlog::warn("{}", complaint);
     if (frames_ > 0) return;
@@ -206,6 +254,8 @@ OptionList pacing_of(SensorShellOptions& options) {
              "Frames a second, whatever the timestamps say; 0: as recorded");
     list.add("speed", options.speed, {0, 1000},
              "Times the recorded speed; 0: as fast as the frames are taken");
+    list.add("restamp", options.restamp,
+             "Stamp frames with the time at which they are due instead of their own: a recording as if it were live");
     return list;
 }
 

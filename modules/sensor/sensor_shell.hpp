@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "messages/convert.hpp"
@@ -15,6 +17,7 @@ namespace planemap::sensor {
 struct SensorShellOptions {
     double rate_hz = 0;
     double speed = 1;
+    bool restamp = false;
     std::string color = "jpeg";
     std::string depth = "zipped";
     int jpeg_quality = 94;
@@ -24,6 +27,10 @@ struct SensorShellOptions {
 
     /// Throws std::invalid_argument that names every bad field.
     void validate() const;
+
+    /// How far the source was played is kept in this file, so that a process that is started again goes on there; empty:
+    /// in none. Frames of a camera have stamps of now: none is left out.
+    std::filesystem::path position;
 };
 
 /// Publishes a source's frames (OPENNI_FRAME) and its camera (PLANEMAP_CAMERA_INFO at the start and once a
@@ -56,10 +63,13 @@ class SensorShell : public messages::Shell {
   private:
     enum class Read { kFrame, kNothing, kEnd };
 
+    void restamp(std::int64_t utime);
     void publish(const SensorFrame& frame);
     void publish_camera(std::int64_t utime);
     bool camera_is_due(std::int64_t utime) const;
     Read read();
+    void resume();
+    void keep_position();
     bool next(ReadResult& result);
     bool jumps() const;
     void count(const ReadResult& result);
@@ -75,6 +85,9 @@ class SensorShell : public messages::Shell {
                                            ///< run gives the same bytes again
     SensorFrame frame_;
     bool pending_ = false, ended_ = false;
+    std::optional<std::int64_t> played_until_;  ///< stamp of the last frame of the process before
+    std::int64_t played_utime_ = 0;             ///< of the last frame published, as the source has it
+    std::int64_t kept_wall_us_ = 0;             ///< when the position was kept last
     std::int64_t frames_ = 0, broken_ = 0, colorless_ = 0, ends_missing_ = 0;
     std::int64_t start_wall_us_ = 0, start_utime_ = 0, start_frame_ = 0, last_utime_ = 0;
     std::int64_t last_camera_utime_ = 0, last_camera_wall_us_ = 0;

@@ -4,8 +4,11 @@
 #include <chrono>
 #include <thread>
 
+#include "core/trajectory_file.hpp"
 #include "graph/synthetic.hpp"
+#include "messages/session.hpp"
 #include "shell_fixture.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap::graph {
 namespace {
@@ -177,6 +180,55 @@ TEST_F(GraphShellTest, EndsWhileTheBackgroundIsAtWork) {
         bus_.publish(messages::channels::kKeyframe, messages::to_message(keyframe, keyframe.id));
     bus_.drain();
     EXPECT_EQ(shell.graph().trajectory().keyframes.size(), walk.keyframes.size());
+}
+
+/// As after a SIGKILL: nothing is told to finish.
+TEST_F(GraphShellTest, AProcessThatIsStartedAgainGoesOnInItsWorldFrameWithItsIds) {
+    const TemporaryFolder folder;
+    GraphFiles files;
+    files.journal = folder / "graph.journal";
+    files.output = folder / "out";
+    test::Random random(1);
+    const auto room = test::make_room(random, Eigen::Vector3d::Zero(), 3.5, 3000);
+    const test::Walk walk = test::walk(room, test::square_loop(3, 12, 1.1), random);
+    const std::size_t half = walk.keyframes.size() / 2;
+    KeyframeTrajectory before;
+    {
+        messages::Bus bus("memq://");
+        GraphShell killed(bus, {}, Optimising::kInHandler, files);
+        for (std::size_t i = 0; i < half; ++i)
+            bus.publish(messages::channels::kKeyframe,
+                        messages::to_message(walk.keyframes[i], static_cast<std::int32_t>(i), 7));
+        bus.drain();
+        before = killed.graph().trajectory();
+        ASSERT_EQ(before.keyframes.size(), half);
+    }
+    GraphShell shell(bus_, {}, Optimising::kInHandler, files);
+    ASSERT_EQ(shell.graph().trajectory().keyframes.size(), half);
+    for (std::size_t i = 0; i < half; ++i) {
+        EXPECT_EQ(shell.graph().trajectory().keyframes[i].id, before.keyframes[i].id);
+        EXPECT_TRUE(shell.graph().trajectory().keyframes[i].world_from_camera.isApprox(
+            before.keyframes[i].world_from_camera, 1e-9));
+    }
+    for (std::size_t i = half - 2; i < walk.keyframes.size(); ++i)  // two of them odometry sends again
+        bus_.publish(messages::channels::kKeyframe,
+                     messages::to_message(walk.keyframes[i], static_cast<std::int32_t>(i), 7));
+    bus_.drain();
+    EXPECT_EQ(shell.graph().trajectory().keyframes.size(), walk.keyframes.size());
+    EXPECT_EQ(shell.status().dropped_count(), 0);
+    // Odometry was started again, too: another session that follows, ids further on, a part of its own.
+    Keyframe next = walk.keyframes.back();
+    next.id += 101;
+    next.previous_id = -1;
+    next.utime += 1000000;
+    next.pose_utime = next.utime;
+    bus_.publish(messages::channels::kKeyframe, messages::to_message(next, 0, messages::next_session(7)));
+    bus_.drain();
+    EXPECT_EQ(shell.graph().trajectory().keyframes.back().id, next.id);
+    ASSERT_EQ(shell.status().remarks().size(), 1u);
+    EXPECT_NE(shell.status().remarks()[0].find("does not hang on those before"), std::string::npos);
+    shell.finish();
+    EXPECT_EQ(read_trajectory_file(folder / "out/trajectory.txt").poses.size(), walk.keyframes.size() + 1);
 }
 
 }  // namespace

@@ -45,7 +45,7 @@ prefix/bin/planemap-virtual-camera sim:office -- planemap-sensor --list | grep -
 version="$(prefix/bin/planemap-run --version)"
 for program in prefix/bin/planemap-*; do
     case "$program" in
-        *-spy | *-launch) "$program" --help >/dev/null ;;
+        *-spy) "$program" --help >/dev/null ;;
         *-bench-*) "$program" --help >/dev/null ;;
         *) [[ "$("$program" --version | grep -o '[0-9.]*$')" == "$(grep -o '[0-9.]*$' <<<"$version")" ]] || {
             echo "$program --version: $("$program" --version)"

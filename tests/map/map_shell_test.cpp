@@ -12,6 +12,7 @@
 #include "map/map_file.hpp"
 #include "messages/log.hpp"
 #include "messages/sample_messages.hpp"
+#include "messages/session.hpp"
 #include "shell_fixture.hpp"
 
 namespace planemap::map {
@@ -268,6 +269,50 @@ TEST_F(MapShellTest, AnOutputThatCannotBeWrittenIsAnErrorAtOnce) {
     options.output = folder_;
     std::filesystem::create_directories(folder_ / "plane_map.lcmlog");
     EXPECT_THROW(MapShell(bus_, options), std::exception);
+}
+
+/// As after a SIGKILL: nothing is told to finish.
+TEST_F(MapShellTest, AProcessThatIsStartedAgainGoesOnWithItsMapAndDoublesNothing) {
+    MapShellOptions options;
+    options.journal = folder_ / "state/map.journal";
+    const Keyframe keyframe = test::sample_keyframe();
+    PlaneMap before;
+    {
+        messages::Bus bus("memq://");
+        MapShell killed(bus, options);
+        bus.publish(messages::channels::kKeyframe, messages::to_message(keyframe, 0, 7));
+        bus.publish(messages::channels::kTrajectory, messages::to_message(trajectory(), 0, 8));
+        bus.drain();
+        killed.poll();
+        before = killed.mapper().map();
+        ASSERT_EQ(before.planes.size(), 2u);
+    }
+    const auto maps = collect<plane_map_t>(messages::channels::kMap);
+    MapShell shell(bus_, options);
+    bus_.drain();
+    ASSERT_EQ(maps->size(), 1u) << "said at once";
+    const PlaneMap after = messages::from_message(maps->back());
+    ASSERT_EQ(after.planes.size(), before.planes.size());
+    for (std::size_t i = 0; i < before.planes.size(); ++i) {
+        EXPECT_EQ(after.planes[i].id, before.planes[i].id);
+        EXPECT_EQ(after.planes[i].inliers, before.planes[i].inliers);
+        EXPECT_EQ(after.planes[i].center, before.planes[i].center);
+    }
+    bus_.publish(messages::channels::kKeyframe, messages::to_message(keyframe, 0, 7));  // odometry sends it again
+    bus_.drain();
+    EXPECT_EQ(shell.mapper().map().planes[0].inliers, before.planes[0].inliers);
+    EXPECT_EQ(shell.status().dropped_count(), 0);
+    // Odometry was started again, too, and is followed at once.
+    Keyframe next = keyframe;
+    next.id += 101;
+    next.utime += 1000000;
+    KeyframeTrajectory both = trajectory();
+    both.keyframes.push_back({next.id, next.utime, Pose::Identity()});
+    bus_.publish(messages::channels::kKeyframe, messages::to_message(next, 0, messages::next_session(7)));
+    bus_.publish(messages::channels::kTrajectory, messages::to_message(both, 0, messages::next_session(8)));
+    bus_.drain();
+    EXPECT_GT(shell.mapper().map().planes[0].inliers, before.planes[0].inliers);
+    EXPECT_TRUE(shell.status().losses().empty());
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "shell_fixture.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap::octomap {
 namespace {
@@ -145,6 +146,31 @@ TEST_F(OctomapShellTest, TheBackgroundComesToTheSameSizes) {
     EXPECT_EQ(ours.revision, theirs.revision);
     EXPECT_EQ(ours.bt_bytes, theirs.bt_bytes);
     EXPECT_EQ(ours.n_nodes, theirs.n_nodes);
+}
+
+/// As after a SIGKILL: nothing is told to finish.
+TEST_F(OctomapShellTest, AProcessThatIsStartedAgainHasTheDepthOfItsKeyframes) {
+    const TemporaryFolder folder;
+    OctomapFiles files;
+    files.journal = folder / "octomap.journal";
+    files.output = folder / "out";
+    std::size_t before = 0;
+    {
+        OctomapShell killed(bus_, std::make_shared<messages::FrameDecoder>(bus_), {}, Building::kInHandler, files);
+        publish_camera();
+        walk(3);
+        bus_.drain();
+        killed.poll();
+        bus_.drain();
+        before = killed.builder().sizes().occupied_leaves;
+        ASSERT_GT(before, 0u);
+    }
+    messages::Bus bus("memq://");
+    OctomapShell shell(bus, std::make_shared<messages::FrameDecoder>(bus), {}, Building::kInHandler, files);
+    shell.finish();
+    EXPECT_EQ(shell.builder().keyframes_in_tree(), 3u);
+    EXPECT_EQ(shell.builder().sizes().occupied_leaves, before);
+    EXPECT_GT(std::filesystem::file_size(folder / "out/octomap.bt"), 100u);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "shell_fixture.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap::odometry {
 namespace {
@@ -238,6 +239,68 @@ TEST_F(OdometryShellTest, WhatIsWrongWithALostFramesDepthIsCounted) {
     publish(aside, 2000, 3000004);
     EXPECT_EQ(count(OdometryShell::kNoReadings), 2);
     EXPECT_EQ(count(OdometryShell::kBesideColor), 1);
+}
+
+/// As after a SIGKILL: it knows the place again, and gives no id twice.
+TEST_F(OdometryShellTest, AProcessThatIsStartedAgainFindsItsPlaceOrBeginsAPartOfItsOwn) {
+    const TemporaryFolder folder;
+    const std::filesystem::path journal = folder / "odometry.journal";
+    int last_id = -1;
+    {
+        messages::Bus bus("memq://");
+        OdometryShell killed(bus, std::make_shared<messages::FrameDecoder>(bus), {}, journal);
+        bus.publish(messages::channels::kCameraInfo, messages::to_message(camera(), 0, 0));
+        bus.subscribe(messages::channels::kKeyframe, [&](const messages::RawMessage& m) {
+            last_id = messages::decode<keyframe_t>(m.bytes).id;
+        });
+        for (int i = 0; i < 30; ++i) bus.publish(messages::channels::kFrame, frame(1000000 + 33333 * i, 0.01 * i));
+        bus.drain();
+        killed.finish();
+        bus.drain();
+    }
+    ASSERT_GE(last_id, 0);
+    OdometryShell shell(bus_, std::make_shared<messages::FrameDecoder>(bus_), {}, journal);
+    const auto estimates = collect<odometry_t>(messages::channels::kOdometry);
+    const auto keyframes = collect<keyframe_t>(messages::channels::kKeyframe);
+    publish_camera();
+    for (int i = 0; i < 5; ++i) bus_.publish(messages::channels::kFrame, frame(5000000 + 33333 * i, 0.2));
+    bus_.drain();
+    shell.finish();
+    bus_.drain();
+    ASSERT_EQ(estimates->size(), 5u);
+    ASSERT_FALSE(keyframes->empty());
+    EXPECT_GT(keyframes->front().id, last_id);
+    EXPECT_GE(keyframes->front().previous_id, 0) << "it hangs on those before";
+    const OdometryEstimate last = messages::from_message(estimates->back());
+    EXPECT_EQ(last.status, TrackingStatus::kTracked);
+    EXPECT_NEAR(last.odom_from_camera.translation().x(), 0.2, 0.03);
+}
+
+TEST_F(OdometryShellTest, StartedAgainElsewhereItIsLostForAWhileAndThenAPartOfItsOwn) {
+    const TemporaryFolder folder;
+    const std::filesystem::path journal = folder / "odometry.journal";
+    {
+        messages::Bus bus("memq://");
+        OdometryShell killed(bus, std::make_shared<messages::FrameDecoder>(bus), {}, journal);
+        bus.publish(messages::channels::kCameraInfo, messages::to_message(camera(), 0, 0));
+        bus.publish(messages::channels::kFrame, frame(1000000));
+        bus.drain();
+        killed.finish();
+    }
+    OdometryShell shell(bus_, std::make_shared<messages::FrameDecoder>(bus_), {}, journal);
+    const auto estimates = collect<odometry_t>(messages::channels::kOdometry);
+    const auto keyframes = collect<keyframe_t>(messages::channels::kKeyframe);
+    publish_camera();
+    for (int i = 0; i < 30; ++i) bus_.publish(messages::channels::kFrame, frame(5000000 + 33333 * i, 20));
+    bus_.drain();
+    shell.finish();
+    bus_.drain();
+    ASSERT_EQ(estimates->size(), 30u);
+    EXPECT_EQ(estimates->front().status, odometry_t::LOST);
+    EXPECT_EQ(estimates->back().status, odometry_t::TRACKED);
+    ASSERT_FALSE(keyframes->empty());
+    EXPECT_GT(keyframes->front().id, 0);
+    EXPECT_EQ(keyframes->front().previous_id, -1);
 }
 
 }  // namespace

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# launch_test.sh BIN: what tools/launch refuses, it refuses before it starts or touches anything; and a recording that
-# ends, ends nothing else.
+# launch_test.sh BIN: what planemap-launch refuses, it refuses before it starts or touches anything; a recording that ends,
+# ends nothing else; a module that dies is started again; and a stop takes less than two seconds and leaves nothing.
 set -euo pipefail
 
 bin="$1"
-launch="$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)/tools/launch"
+launch="$bin/planemap-launch"
 work="$(mktemp -d)" said="$(mktemp)"
 trap 'rm -rf "$work" "$said"' EXIT
 
@@ -14,7 +14,8 @@ refused() {
     local words="$1" before after
     shift
     before="$(cd "$work" && find . -type f -exec sha256sum {} + | sort; find "$work" | sort)"
-    if "$launch" --bin "$bin" --lcm-url 'udpm://239.255.76.67:7697?ttl=0' "$@" >/dev/null 2>"$said"; then
+    [[ "$*" == *--lcm-url* ]] || set -- --lcm-url 'udpm://239.255.76.67:7697?ttl=0' "$@"
+    if "$launch" --bin "$bin" "$@" >/dev/null 2>"$said"; then
         echo "launch_test: launch $* was not refused" >&2
         exit 1
     fi
@@ -67,7 +68,7 @@ for lives in 0 3; do # it ends before the sensor starts, and while it plays
     AT_START=true LOGGER_LIVES="$lives" PATH="$stand_ins:$PATH" "$launch" --bin "$stand_ins" --lcm-url tcpq://127.0.0.1:1 \
         --log "$work/full-$lives.lcmlog" --output "$work/recorded" 2>"$said" || code=$?
     if [[ "$code" -ne 1 || "$(grep -c "lcm-logger ended" "$said")" -ne 2 ]] || ! grep -q "sensor done" "$said" ||
-        ! tail -n 1 "$said" | grep -q "tools/launch: lcm-logger ended.*full-$lives.lcmlog" ||
+        ! tail -n 1 "$said" | grep -q "lcm-logger ended.*full-$lives.lcmlog" ||
         grep -q "stopping the others" "$said"; then
         echo "launch_test: the recording ended, code $code:" >&2
         cat "$said" >&2
@@ -82,4 +83,39 @@ printf '#!/bin/bash\nrm -f "%s"\ntouch "%s"\n' "$lock" "$lock" >"$stand_ins/take
 chmod +x "$stand_ins/take"
 AT_START="$stand_ins/take" "$launch" --bin "$stand_ins" --lcm-url tcpq://127.0.0.1:1 --output "$work/recorded" 2>"$said"
 [[ -e "$lock" ]] || { echo "launch_test: another run's lock was removed" >&2 && exit 1; }
-echo "launch_test: all refused, nothing touched; a recording that ends, ends nothing else"
+
+# A module that dies is started again, later each time, and said; the others live on.
+printf '#!/bin/bash\necho "$$" >>"$WORK/graph.lives"; sleep 0.2; kill -SEGV $$\n' >"$stand_ins/planemap-graph"
+printf '#!/bin/bash\n[[ "$1" == --check ]] && exit\ntrap "exit 0" TERM\nfor ((i = 0; i < 45; ++i)); do sleep 0.1; done\n' \
+    >"$stand_ins/planemap-sensor"
+chmod +x "$stand_ins"/*
+code=0
+WORK="$work" "$launch" --bin "$stand_ins" --lcm-url tcpq://127.0.0.1:1 --output "$work/dying" 2>"$said" || code=$?
+lives="$(wc -l <"$work/graph.lives")"
+if [[ "$code" -ne 0 || "$lives" -lt 3 || "$lives" -gt 6 ]] || ! grep -q "graph was ended by signal 11.*again in 0.5 s" "$said" ||
+    ! grep -q "graph was ended by signal 11.*again in 1.0 s" "$said" || ! grep -q "started again: graph $((lives - 1))" "$said" ||
+    grep -q "map was ended" "$said"; then
+    echo "launch_test: a module that dies: code $code, $lives lives:" >&2
+    cat "$said" >&2
+    exit 1
+fi
+
+# A stop takes less than two seconds, also where a module does not obey, and leaves no process and no lock.
+printf '#!/bin/bash\ntrap "" TERM\necho "$$" >"$WORK/map.pid"\nwhile true; do sleep 0.1; done\n' >"$stand_ins/planemap-map"
+printf '#!/bin/bash\ntrap "exit 0" TERM\nfor ((i = 0; i < 300; ++i)); do sleep 0.1; done\n' >"$stand_ins/planemap-graph"
+chmod +x "$stand_ins"/*
+WORK="$work" "$launch" --bin "$stand_ins" --lcm-url tcpq://127.0.0.1:1 --output "$work/stubborn" 2>"$said" &
+pid=$!
+sleep 3
+began="$(date +%s%N)"
+kill -TERM "$pid"
+code=0
+wait "$pid" || code=$?
+took_ms=$((($(date +%s%N) - began) / 1000000))
+if [[ "$code" -ne 1 || "$took_ms" -gt 2000 ]] || ! grep -q "map did not stop in time and was killed" "$said" ||
+    kill -0 "$(cat "$work/map.pid")" 2>/dev/null || [[ -e "$work/stubborn/.partial.lock" ]]; then
+    echo "launch_test: a stop: code $code, $took_ms ms:" >&2
+    cat "$said" >&2
+    exit 1
+fi
+echo "launch_test: all refused, nothing touched; what ends or dies, ends nothing else; a stop leaves nothing"

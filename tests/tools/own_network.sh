@@ -103,9 +103,9 @@ wait_for_modules() {
     done
 }
 
-# launch ARGS...: tools/launch of $root with $bin and $url in place of this subshell; its process id goes into launch_pid.
-launch() { exec setpriv --pdeathsig TERM "$root/tools/launch" --bin "$bin" --lcm-url "$url" "$@"; }
-launch_on() { exec_on "$1" "$root/tools/launch" --bin "$bin" --lcm-url "$url" "${@:2}"; }
+# launch ARGS...: planemap-launch of $bin with $url in place of this subshell; its process id goes into launch_pid.
+launch() { exec setpriv --pdeathsig TERM "$bin/planemap-launch" --lcm-url "$url" "$@"; }
+launch_on() { exec_on "$1" "$bin/planemap-launch" --lcm-url "$url" "${@:2}"; }
 
 # replay LOG RECORDED OUTPUT PLAYER-ARGS...: plays what a camera sent in LOG into the modules; all that is on the bus goes
 # into the log RECORDED, and the map into the folder OUTPUT. Returns the exit code of what went wrong.

@@ -21,7 +21,8 @@ constexpr const char* kPrograms[] = {
     "planemap-run",          "planemap-evaluate", "planemap-export", "planemap-report",
     "planemap-simulate",     "planemap-segment",  "planemap-sensor", "planemap-log",
     "planemap-segmentation", "planemap-odometry", "planemap-graph",  "planemap-map",
-    "planemap-octomap",      "planemap-convert",  "planemap-viewer", "planemap-virtual-camera"};
+    "planemap-octomap",      "planemap-convert",  "planemap-viewer", "planemap-virtual-camera",
+    "planemap-launch"};
 
 struct ProgramsTest : test::Programs {
     Json evaluate(const std::string& truth, const std::string& estimate) {
@@ -35,7 +36,7 @@ TEST_F(ProgramsTest, UnknownFlagsAreNamed) {
     for (const char* program : kPrograms) expect_error(program, "--verbsoe", "unknown flag --verbsoe");
     for (const char* program : {"planemap-run", "planemap-simulate", "planemap-segment", "planemap-map"})
         expect_error(program, "sim:office --outptu x", "unknown flag --outptu, did you mean --output?");
-    for (const char* tool : {"install", "launch", "spy", "test"}) {
+    for (const char* tool : {"install", "spy", "test"}) {
         const Outcome outcome = run_shell("tools/" + std::string(tool) + " --no-such-option");
         EXPECT_NE(outcome.exit_code, 0) << tool;
         EXPECT_THAT(outcome.err, HasSubstr("--no-such-option")) << tool;
