@@ -20,8 +20,8 @@ struct FramePose {
     Pose keyframe_from_camera = Pose::Identity(), odom_from_camera = Pose::Identity();
 };
 
-/// world_from_camera of the frames that were not lost, by time: each at its keyframe, or, where no trajectory named that,
-/// where the odom frame lies. `frames` are FramePoses or OdometryEstimates.
+/// world_from_camera of the frames that were not lost, by time: each at its keyframe, or, where no trajectory
+/// named that, where the odom frame lies. `frames` are FramePoses or OdometryEstimates.
 template <typename Frames>
 Trajectory place_frames(const Frames& frames, const KeyframePoses& keyframes, const Pose& world_from_odom) {
     Trajectory trajectory;

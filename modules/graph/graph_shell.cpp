@@ -32,7 +32,8 @@ GraphShell::GraphShell(messages::Bus& bus, const GraphOptions& options, Optimisi
     bus_.subscribe(messages::channels::kKeyframe,
                    status_.guard([this](const messages::RawMessage& m) { on_keyframe(m); }), 256);
     if (!output_.empty())
-        bus_.subscribe(messages::channels::kOdometry, [this](const messages::RawMessage& m) { on_odometry(m); }, 256);
+        bus_.subscribe(
+            messages::channels::kOdometry, [this](const messages::RawMessage& m) { on_odometry(m); }, 256);
 }
 
 void GraphShell::on_odometry(const messages::RawMessage& message) {
@@ -127,8 +128,8 @@ void GraphShell::resume() {
     start_if_due();
 }
 
-/// Makes the journal as small as the graph is: without the keyframes that went for newer ones of their place. An edge from
-/// one of these leads from the newest before it that is left, as the graph has both.
+/// Makes the journal as small as the graph is: without the keyframes that went for newer ones of their place.
+/// An edge from one of these leads from the newest before it that is left, as the graph has both.
 void GraphShell::compact() {
     std::map<int, Pose> poses;
     for (const KeyframePose& keyframe : graph_.trajectory().keyframes)
@@ -137,7 +138,8 @@ void GraphShell::compact() {
         keyframe_t message = messages::decode<keyframe_t>(event.bytes);
         const auto here = poses.find(message.id);
         if (here == poses.end()) return false;
-        if (message.previous_id < 0 || poses.contains(message.previous_id) || here == poses.begin()) return true;
+        if (message.previous_id < 0 || poses.contains(message.previous_id) || here == poses.begin())
+            return true;
         const auto before = std::prev(here);
         Keyframe keyframe = messages::from_message(message);
         keyframe.previous_id = before->first;

@@ -30,9 +30,9 @@ struct GraphFiles {
     std::filesystem::path journal;  ///< keyframes, for a process that is started again
 };
 
-/// PLANEMAP_KEYFRAME to PLANEMAP_TRAJECTORY. With a journal, a process that is started again goes on with the keyframes of
-/// the one before, in the same world frame. With an output folder, PLANEMAP_ODOMETRY is heard, too, and trajectory.txt has
-/// all frames (of those before a restart: the keyframes).
+/// PLANEMAP_KEYFRAME to PLANEMAP_TRAJECTORY. With a journal, a process that is started again goes on with the
+/// keyframes of the one before, in the same world frame. With an output folder, PLANEMAP_ODOMETRY is heard,
+/// too, and trajectory.txt has all frames (of those before a restart: the keyframes).
 class GraphShell : public messages::Shell {
   public:
     GraphShell(messages::Bus& bus, const GraphOptions& options,
@@ -80,8 +80,8 @@ class GraphShell : public messages::Shell {
     std::filesystem::path output_;
     std::deque<FramePose> frames_;  ///< where the frames were, at most kMostFrames
     KeyframePoses poses_;
-    std::int64_t last_session_ = 0;               ///< of the last keyframe that was taken
-    std::set<int> lately_;                        ///< ids of the last ones that were taken
+    std::int64_t last_session_ = 0;  ///< of the last keyframe that was taken
+    std::set<int> lately_;           ///< ids of the last ones that were taken
 };
 
 }  // namespace planemap::graph

@@ -56,8 +56,9 @@ class PlaneMapper {
     /// it saw goes over to the nearest eight of those, see hand_over().
     void update(const KeyframeTrajectory& trajectory);
 
-    /// Which plane each region of each keyframe is part of, in the order in which the mapper keeps them: by plane id, -1
-    /// for none. With the same keyframes and poses, restore_ids() gives the planes of another mapper their ids by it.
+    /// Which plane each region of each keyframe is part of, in the order in which the mapper keeps them: by
+    /// plane id, -1 for none. With the same keyframes and poses, restore_ids() gives the planes of another
+    /// mapper their ids by it.
     std::map<int, std::vector<int>> planes_of_regions() const;
     void restore_ids(const std::map<int, std::vector<int>>& planes_of_regions);
 

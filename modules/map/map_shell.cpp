@@ -122,13 +122,15 @@ void MapShell::resume() {
     mapper_.update(poses);
     mapper_.restore_ids(decode_region_planes(ids));
     watch_.named(poses, messages::now_us());
+    is_ours_ = true;  // what lies in the output folder is this map, as it was
     tell_losses();
-    spdlog::info("map: goes on with {} planes of {} keyframes of {}", mapper_.map().planes.size(), mapper_.keyframes(),
-                 journal_->file().string());
+    spdlog::info("map: goes on with {} planes of {} keyframes of {}", mapper_.map().planes.size(),
+                 mapper_.keyframes(), journal_->file().string());
     publish();
 }
 
-/// Once a second: poses and ids, of which a kill loses no more; now and then: the journal becomes as small as the map is.
+/// Once a second: poses and ids, of which a kill loses no more; now and then: the journal becomes as small as
+/// the map is.
 void MapShell::tend_journal() {
     const std::int64_t now = messages::now_us();
     if (!trajectory_.empty() && now - saved_us_ >= kSavePeriodUs) save_poses_and_ids();

@@ -25,8 +25,8 @@ struct MapShellOptions {
     /// error. A disk that is full is not, nor a write that fails later: it is said in the status and tried
     /// again every second, at the end finish() throws if the last one failed.
     std::filesystem::path output;
-    /// Keyframes, poses and plane ids are kept in this file: a process that is started again goes on with them, in the
-    /// same world frame; empty: in none.
+    /// Keyframes, poses and plane ids are kept in this file: a process that is started again goes on with
+    /// them, in the same world frame; empty: in none.
     std::filesystem::path journal;
 };
 
@@ -70,7 +70,7 @@ class MapShell : public messages::Shell {
     std::int64_t keyframes_of_ = 0;               ///< session of the last keyframe
     std::int64_t saved_us_ = 0;                   ///< wall clock when the journal got the last one
     std::int64_t newest_utime_ = 0;               ///< of the keyframes in the map
-    MapLosses told_;  ///< what the status knows
+    MapLosses told_;                              ///< what the status knows
     std::int32_t seq_ = 0;
     std::int64_t published_us_ = 0;  ///< wall clock of the last map; 0: none yet
     std::int64_t last_write_us_ = 0;

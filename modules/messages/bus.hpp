@@ -58,7 +58,8 @@ class Bus {
     /// Tells what this process sends from what another one sends, or it itself before it started again: drawn
     /// at random, not 0. In one process 0, so that the same input gives the same bytes.
     std::int64_t session() const { return session_; }
-    /// Goes on as what a process of this session sent (see messages/session.hpp); before anything is published.
+    /// Goes on as what a process of this session sent (see messages/session.hpp); before anything is
+    /// published.
     void go_on_as(std::int64_t session) { session_ = session; }
 
     /// Sends a message. Throws std::invalid_argument for a channel that is too long for LCM. One that cannot

@@ -85,8 +85,8 @@ class FrameDecoder {
     /// message that is no usable frame.
     std::shared_ptr<const Frame> decode(const RawMessage& message) const;
 
-    /// On a network, a frame that waited longer than this for its turn is dropped: in every process that lives on
-    /// frames, before anything is done with it. What it counts as lost is kStale.
+    /// On a network, a frame that waited longer than this for its turn is dropped: in every process that
+    /// lives on frames, before anything is done with it. What it counts as lost is kStale.
     static constexpr std::int64_t kStale_us = 500000;
     static constexpr const char* kStale = "stale frames, which had waited for over half a second";
 

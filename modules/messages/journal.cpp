@@ -72,7 +72,8 @@ void Journal::open() {
     if (::flock(file_, LOCK_EX | LOCK_NB) == 0) return;
     const int error = errno;
     ::close(file_);
-    if (error == EWOULDBLOCK) throw std::runtime_error(path_.string() + ": another process goes on with this state");
+    if (error == EWOULDBLOCK)
+        throw std::runtime_error(path_.string() + ": another process goes on with this state");
     refuse(path_, "cannot be locked", error);
 }
 
@@ -86,8 +87,8 @@ void Journal::cut_torn_tail() {
     }
     const std::uint64_t torn = log.bytes_total() - end;
     if (torn > 0) {
-        complaints_.push_back(path_.string() + ": its last record was not written whole; " + std::to_string(torn) +
-                              " bytes cut off");
+        complaints_.push_back(path_.string() + ": its last record was not written whole; " +
+                              std::to_string(torn) + " bytes cut off");
         if (::ftruncate(file_, static_cast<off_t>(end)) != 0) refuse(path_, "cannot be cut", errno);
     }
     if (log.bytes_skipped() > torn)
@@ -138,7 +139,8 @@ void Journal::fail(const std::string& what, int error) {
 std::string Journal::trouble() const {
     const std::lock_guard lock(mutex_);
     if (trouble_.empty() && unwritten_ == 0) return {};
-    return (trouble_.empty() ? path_.string() : trouble_) + "; messages missing in it: " + std::to_string(unwritten_);
+    return (trouble_.empty() ? path_.string() : trouble_) +
+           "; messages missing in it: " + std::to_string(unwritten_);
 }
 
 std::optional<std::string> Journal::news() {

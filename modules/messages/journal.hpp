@@ -18,9 +18,9 @@
 
 namespace planemap::messages {
 
-/// The messages that made a module what it is, in a file that outlives it: an LCM log, so that every tool for logs
-/// reads it. A message is with the kernel when add() returns, and on the disk a second later: a process that is
-/// killed loses nothing that it took, a power cut one second. One process at a time has a journal.
+/// The messages that made a module what it is, in a file that outlives it: an LCM log, so that every tool for
+/// logs reads it. A message is with the kernel when add() returns, and on the disk a second later: a process
+/// that is killed loses nothing that it took, a power cut one second. One process at a time has a journal.
 ///
 /// A disk that is full or fails ends nothing: what could not be written is counted, and trouble() says so.
 class Journal {
@@ -33,8 +33,8 @@ class Journal {
     Journal(const Journal&) = delete;
     Journal& operator=(const Journal&) = delete;
 
-    /// Gives each message in the order in which they were added; returns how many. What is no whole record in the
-    /// middle of the file (damage) is left out and said in complaints().
+    /// Gives each message in the order in which they were added; returns how many. What is no whole record in
+    /// the middle of the file (damage) is left out and said in complaints().
     std::int64_t replay(const std::function<void(const LogEvent&)>& handler);
 
     void add(std::string_view channel, std::span<const std::uint8_t> bytes);

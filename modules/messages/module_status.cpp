@@ -15,7 +15,7 @@ namespace planemap::messages {
 namespace {
 constexpr std::int64_t kPeriodUs = 1000000;
 constexpr std::int64_t kOldest_us = 60000000;  // older, a frame was not taken just now
-constexpr std::int64_t kAnswerUs = 3000000;  // by then something should have come out of what came in
+constexpr std::int64_t kAnswerUs = 3000000;    // by then something should have come out of what came in
 }  // namespace
 
 double thread_cpu_ms() {
@@ -194,7 +194,8 @@ std::string ModuleStatus::line() const {
     std::string text = full_text();
     if (age_ms_.count() > 0) {
         char age[80];
-        std::snprintf(age, sizeof(age), "%.0f ms (p95 %.0f) after the shutter", age_ms_.median(), age_ms_.p95());
+        std::snprintf(age, sizeof(age), "%.0f ms (p95 %.0f) after the shutter", age_ms_.median(),
+                      age_ms_.p95());
         text = age + (text.empty() ? "" : "; " + text);
     }
     return text.empty() ? line : std::string(line) + "; " + text;

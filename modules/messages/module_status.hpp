@@ -34,8 +34,8 @@ class ModuleStatus {
     /// Inputs that are dropped count too.
     void received(std::optional<std::uint32_t> seq = std::nullopt);
     void published() { ++published_; }
-    /// The same of an output whose frame is of this time: how old it is now is the module's age, from the shutter to
-    /// here. Stamps that are not of the wall clock (a recording's) tell none.
+    /// The same of an output whose frame is of this time: how old it is now is the module's age, from the
+    /// shutter to here. Stamps that are not of the wall clock (a recording's) tell none.
     void published(std::int64_t frame_utime, std::int64_t now_us);
     void dropped(std::int64_t count = 1) { dropped_ += count; }
     void decode_error() { ++decode_errors_; }

@@ -143,8 +143,9 @@ Process::Process(std::string module, const std::string& description)
     flags_.add("channel-prefix", channel_prefix_,
                "Begins the name of every channel, for two cameras or robots on one bus; all modules of a "
                "session are given the same");
-    flags_.add("state", state_,
-               "Folder for what the module goes on with when it is started again; without one it starts anew");
+    flags_.add(
+        "state", state_,
+        "Folder for what the module goes on with when it is started again; without one it starts anew");
     flags_.add("v,verbose", verbose_, "Log more");
 }
 

@@ -61,7 +61,9 @@ class Process {
     /// Folder that the module keeps its state in (--state); empty: it keeps none.
     const std::filesystem::path& state() const { return state_; }
     /// The module's file in it; empty without.
-    std::filesystem::path journal() const { return state_.empty() ? state_ : state_ / (module_ + ".journal"); }
+    std::filesystem::path journal() const {
+        return state_.empty() ? state_ : state_ / (module_ + ".journal");
+    }
     /// Parses flags, opens the bus, makes the shell and runs it until it is done or a signal comes.
     /// Returns the exit code: 0 after a clean stop, 1 for an error (one line on stderr), 2 for wrong flags.
     int run(int argc, char** argv, const std::function<std::unique_ptr<Shell>(Bus&)>& make_shell);

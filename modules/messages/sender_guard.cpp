@@ -55,7 +55,8 @@ std::uint32_t checksum_of(std::span<const std::uint8_t> bytes) {
     return libdeflate_crc32(0, bytes.data(), bytes.size());
 }
 
-/// Whether the message is of a process that goes on with the state of the one that is followed, which is no more then.
+/// Whether the message is of a process that goes on with the state of the one that is followed, which is no
+/// more then.
 bool SenderGuard::is_started_again(const Message& message) const {
     const auto &before = followed_->last.sender, &now = message.sender;
     return before && now && *before != *now &&

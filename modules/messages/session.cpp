@@ -30,7 +30,8 @@ std::uint64_t read_session(const std::filesystem::path& file) {
     std::uint64_t session = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), session, 16);
     if (error != std::errc() || session == 0)
-        throw std::runtime_error(file.string() + ": is no session of 16 hexadecimal digits; remove it to start anew");
+        throw std::runtime_error(file.string() +
+                                 ": is no session of 16 hexadecimal digits; remove it to start anew");
     return session;
 }
 
@@ -40,7 +41,8 @@ void sync_folder(const std::filesystem::path& folder) {
     const bool failed = handle < 0 || ::fsync(handle) != 0;
     const int error = errno;
     if (handle >= 0) ::close(handle);
-    if (failed && error != EINVAL) throw std::runtime_error(folder.string() + ": cannot be synced: " + std::strerror(error));
+    if (failed && error != EINVAL)
+        throw std::runtime_error(folder.string() + ": cannot be synced: " + std::strerror(error));
 }
 
 }  // namespace
@@ -67,7 +69,9 @@ bool succeeds(std::int64_t later, std::int64_t earlier) {
 std::int64_t session_with_state(const std::filesystem::path& folder, const std::string& module) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
-    if (error) throw std::runtime_error(folder.string() + ": the folder of the state cannot be made: " + error.message());
+    if (error)
+        throw std::runtime_error(folder.string() +
+                                 ": the folder of the state cannot be made: " + error.message());
     const std::filesystem::path file = folder / (module + ".session");
     const std::uint64_t before = read_session(file);
     const std::int64_t now = before == 0 ? random_session() : next_session(static_cast<std::int64_t>(before));

@@ -18,7 +18,11 @@ class StreamGuard {
     /// What is not admitted counts in `status` as lost `things`, plural; if they are the module's main
     /// stream, those of the sender count as received. Beside it each message takes the place of those before.
     StreamGuard(const std::string& channel, std::string things, ModuleStatus& status, bool main_stream = true)
-        : channel_(channel), guard_(channel), things_(std::move(things)), status_(status), main_stream_(main_stream) {}
+        : channel_(channel),
+          guard_(channel),
+          things_(std::move(things)),
+          status_(status),
+          main_stream_(main_stream) {}
 
     /// Whether to use a message; `session` is the sender's id, or 0 if it does not say. One that repeats the
     /// last, byte for byte, is not used; beside the main stream it is for those who came late, in it (nobody

@@ -14,7 +14,8 @@ int main(int argc, char** argv) {
     planemap::messages::CameraFlag camera;
     camera.add_to(process.flags(), planemap::messages::kCameraOffTheBus);
     planemap::octomap::OctomapFiles files;
-    process.flags().add("o,output", files.output, "Folder for octomap.bt at the end; without it nothing is written");
+    process.flags().add("o,output", files.output,
+                        "Folder for octomap.bt at the end; without it nothing is written");
     process.flags().add(options_of(options));
     return process.run(argc, argv, [&](planemap::messages::Bus& bus) {
         // It is there for comparison: who needs the time goes before it.

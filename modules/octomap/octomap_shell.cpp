@@ -167,8 +167,9 @@ void OctomapShell::resume() {
 void OctomapShell::keep(const messages::Frame& frame, std::span<const std::uint8_t> bytes) {
     if (!journal_camera_ || !(*journal_camera_ == frame.camera())) {
         journal_camera_ = frame.camera();
-        journal_->add(messages::channels::kCameraInfo,
-                      messages::to_bytes(messages::to_message(frame.camera(), frame.utime(), 0, bus_.session())));
+        journal_->add(
+            messages::channels::kCameraInfo,
+            messages::to_bytes(messages::to_message(frame.camera(), frame.utime(), 0, bus_.session())));
     }
     bot_core::images_t images;
     images.utime = frame.utime();
@@ -187,7 +188,8 @@ void OctomapShell::save_trajectory() {
     saved_us_ = messages::now_us();
 }
 
-/// Once a second: poses, of which a kill loses no more; now and then: without the keyframes that went for newer ones.
+/// Once a second: poses, of which a kill loses no more; now and then: without the keyframes that went for
+/// newer ones.
 void OctomapShell::tend_journal() {
     constexpr std::int64_t kSavePeriod_us = 1000000;
     if (messages::now_us() - saved_us_ >= kSavePeriod_us) save_trajectory();
@@ -198,7 +200,9 @@ void OctomapShell::tend_journal() {
         const int newest = *named_.rbegin();
         std::set<std::int64_t> frames;  // of the keyframes that stay, by utime
         std::int64_t last_trajectory = -1;
-        const auto stays = [&](const keyframe_t& keyframe) { return keyframe.id > newest || kept.contains(keyframe.id); };
+        const auto stays = [&](const keyframe_t& keyframe) {
+            return keyframe.id > newest || kept.contains(keyframe.id);
+        };
         journal_->replay([&](const messages::LogEvent& event) {
             if (event.channel == messages::channels::kTrajectory) last_trajectory = event.number;
             if (event.channel != messages::channels::kKeyframe) return;

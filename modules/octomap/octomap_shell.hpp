@@ -90,11 +90,12 @@ class OctomapShell : public messages::Shell {
     messages::KeyframeWatch watch_{status_, "the OctoMap is incomplete"};
     std::deque<Recent> recent_;
     std::size_t recent_bytes_ = 0;
-    std::unique_ptr<messages::Journal> journal_;     ///< null without
-    std::optional<CameraInfo> journal_camera_;       ///< that the journal described last
-    std::vector<std::uint8_t> trajectory_;           ///< the last one, where the journal does not have it yet
-    std::set<int> named_;                            ///< keyframes of the last trajectory
-    std::int64_t saved_us_ = 0, keyframes_of_ = 0;   ///< wall clock of the last save; session of the last keyframe
+    std::unique_ptr<messages::Journal> journal_;  ///< null without
+    std::optional<CameraInfo> journal_camera_;    ///< that the journal described last
+    std::vector<std::uint8_t> trajectory_;        ///< the last one, where the journal does not have it yet
+    std::set<int> named_;                         ///< keyframes of the last trajectory
+    std::int64_t saved_us_ = 0,
+                 keyframes_of_ = 0;   ///< wall clock of the last save; session of the last keyframe
     std::map<int, Waiting> waiting_;  ///< by keyframe id
     double resolution_m_;
     std::size_t max_keyframes_;

@@ -57,9 +57,9 @@ bool CameraMotion::is_plausible(const Pose& odom_from_camera, std::int64_t utime
            rotation_angle(moved) < reach * (1 + elapsed);
 }
 
-void CameraMotion::stand_at(const Pose& odom_from_camera) {
+void CameraMotion::stand_at(const Pose& odom_from_camera, std::int64_t utime) {
     filter_.start(odom_from_camera);
-    pose_utime_ = 0;
+    pose_utime_ = utime;
     lost_frames_ = 0;
 }
 

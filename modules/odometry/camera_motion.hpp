@@ -29,8 +29,8 @@ class CameraMotion {
     /// True when the camera can have come there since the last pose.
     bool is_plausible(const Pose& odom_from_camera, std::int64_t utime) const;
 
-    /// The camera was here when it was last seen, at no time that is known.
-    void stand_at(const Pose& odom_from_camera);
+    /// The camera was here at this time, at rest, for all that is known.
+    void stand_at(const Pose& odom_from_camera, std::int64_t utime);
     /// Begins anew at the last pose, at rest.
     void start(std::int64_t utime);
     /// Takes over a frame's pose, without its jitter (see Located::filtered), and the motion since the last.

@@ -60,6 +60,12 @@ void KnownKeyframes::drop_one() {
     keyframes_.erase(keyframes_.begin() + static_cast<std::ptrdiff_t>(oldest_of_pair));
 }
 
+const KnownKeyframe* KnownKeyframes::find(int id) const {
+    const auto found = std::find_if(keyframes_.begin(), keyframes_.end(),
+                                    [&](const KnownKeyframe& keyframe) { return keyframe.id == id; });
+    return found == keyframes_.end() ? nullptr : &*found;
+}
+
 std::vector<const KnownKeyframe*> KnownKeyframes::candidates(const GrayImage& gray, int count) const {
     if (keyframes_.empty() || count < 1) return {};
     const std::vector<float> thumbnail = make_thumbnail(gray);

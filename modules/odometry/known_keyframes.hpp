@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/geometry/plane.hpp"
 #include "core/image.hpp"
 #include "core/keyframe.hpp"
 
@@ -18,6 +19,8 @@ struct KnownKeyframe {
     Pose odom_from_keyframe = Pose::Identity();
     std::vector<Feature> features;
     std::vector<float> thumbnail;  ///< empty: its image is not known any more
+    std::vector<Plane> planes =
+        {};  ///< it saw, the largest first, camera frame; only of one whose image is not known
 };
 
 /// A bounded set of keyframes. When it is full, of the two keyframes nearest to each other (the newest ten
@@ -29,7 +32,11 @@ class KnownKeyframes {
     void add(KnownKeyframe keyframe);
     void clear() { keyframes_.clear(); }
 
-    /// The newest keyframe and those most like the image (of those whose image is not known the newest first), at most `count`; pointers until the next add().
+    /// The one with an id, or nullptr.
+    const KnownKeyframe* find(int id) const;
+
+    /// The newest keyframe and those most like the image (of those whose image is not known the newest
+    /// first), at most `count`; pointers until the next add().
     std::vector<const KnownKeyframe*> candidates(const GrayImage& gray, int count) const;
 
   private:

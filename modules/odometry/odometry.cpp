@@ -82,7 +82,7 @@ void Odometry::State::resume(std::span<const Keyframe> keyframes) {
         relocaliser_.add(keyframe);
         next_id_ = std::max(next_id_, keyframe.id + 1 + kIdsLeftOut);
     }
-    motion_.stand_at(keyframes.back().odom_from_camera);
+    motion_.stand_at(keyframes.back().odom_from_camera, keyframes.back().utime);
     resumed_ = true;
 }
 
@@ -91,6 +91,7 @@ OdometryResult Odometry::State::find_again(PreparedFrame& frame) {
     OdometryResult result;
     std::optional<Located> located;
     if (frame.gray) located = relocaliser_.locate(frame, motion_, keyframes_);
+    if (located && !relocaliser_.agrees(*located, frame.regions)) located.reset();
     if (!located) {
         motion_.lose();
         resumed_ = motion_.lost_frames() < options_.max_lost_frames;

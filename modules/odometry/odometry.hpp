@@ -45,9 +45,9 @@ class Odometry {
     Odometry(Odometry&&) noexcept;
     Odometry& operator=(Odometry&&) noexcept;
 
-    /// Goes on where another Odometry ended that had made these keyframes (in order, the newest last): their ids are not
-    /// given again, and the camera is lost until it finds a place that one of them saw, or for max_lost_frames. Call it
-    /// before the first frame.
+    /// Goes on where another Odometry ended that had made these keyframes (in order, the newest last): their
+    /// ids are not given again, and the camera is lost until it finds a place that one of them saw, or for
+    /// max_lost_frames. Call it before the first frame.
     void resume(std::span<const Keyframe> keyframes);
 
     /// Throws std::invalid_argument when depth or camera is missing, an image has not the colour camera's

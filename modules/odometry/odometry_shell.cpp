@@ -67,8 +67,8 @@ void OdometryShell::resume() {
     });
     odometry_.resume(keyframes);
     if (!keyframes.empty())
-        spdlog::info("odometry: knows {} keyframes of {}; lost until it finds a place that they saw", keyframes.size(),
-                     journal_->file().string());
+        spdlog::info("odometry: knows {} keyframes of {}; lost until it finds a place that they saw",
+                     keyframes.size(), journal_->file().string());
 }
 
 /// A module that was started again has missed what was sent meanwhile.
@@ -83,14 +83,16 @@ void OdometryShell::on_status(const messages::RawMessage& message) {
 
 void OdometryShell::send_again() {
     for (const Sent& sent : sent_)
-        if (Clock::now() - sent.at < kSendAgain) bus_.publish_bytes(messages::channels::kKeyframe, sent.bytes);
+        if (Clock::now() - sent.at < kSendAgain)
+            bus_.publish_bytes(messages::channels::kKeyframe, sent.bytes);
 }
 
 void OdometryShell::publish(const Keyframe& keyframe) {
     constexpr std::size_t kMostSent = 32;
     const keyframe_t message = messages::to_message(keyframe, keyframe_seq_++, bus_.session());
     std::vector<std::uint8_t> bytes = messages::to_bytes(message);
-    if (journal_) journal_->add(messages::channels::kKeyframe, bytes);  // first: an id that is known is given once
+    if (journal_)
+        journal_->add(messages::channels::kKeyframe, bytes);  // first: an id that is known is given once
     bus_.publish_bytes(messages::channels::kKeyframe, bytes);
     messages::remark_new_part(status_, keyframe.id, keyframe.previous_id, keyframe.utime);
     if (!bus_.is_network()) return;

@@ -23,9 +23,9 @@ namespace planemap::odometry {
 /// kMaxWait; then it goes on without. After kMaxMissing of these in a row (no segmentation on the bus) frames
 /// do not wait, until regions come again.
 ///
-/// With a journal, which a path names, a process that is started again knows the keyframes that it made: their ids are not
-/// given again, and it is lost until it finds a place that they saw. The keyframes of the last seconds are sent again when
-/// a module that lives on them was started again.
+/// With a journal, which a path names, a process that is started again knows the keyframes that it made:
+/// their ids are not given again, and it is lost until it finds a place that they saw. The keyframes of the
+/// last seconds are sent again when a module that lives on them was started again.
 class OdometryShell : public messages::Shell {
   public:
     OdometryShell(messages::Bus& bus, std::shared_ptr<messages::FrameDecoder> decoder,

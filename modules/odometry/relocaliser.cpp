@@ -1,12 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "odometry/relocaliser.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "odometry/feature_matching.hpp"
 #include "odometry/features.hpp"
 #include "odometry/ransac.hpp"
 
 namespace planemap::odometry {
 namespace {
+
+/// A plane of a keyframe is seen again: within so much; one that is turned less than kNearAngle and is not,
+/// contradicts.
+constexpr double kAngle = 0.07, kNearAngle = 0.6;  // radians
+constexpr double kOffset = 0.06;                   // metres
+constexpr std::size_t kRegions = 3;
 
 constexpr int kInliers = 20;  // matched features that make a place known again
 
@@ -29,7 +38,28 @@ void Relocaliser::add(const Keyframe& keyframe, const PreparedFrame& frame) {
 }
 
 void Relocaliser::add(const Keyframe& keyframe) {
-    known_.add({keyframe.id, keyframe.odom_from_camera, keyframe.features, {}});
+    std::vector<Plane> planes;
+    for (const PlanarRegion& region : keyframe.regions) planes.push_back(region.plane);  // the largest first
+    known_.add({keyframe.id, keyframe.odom_from_camera, keyframe.features, {}, std::move(planes)});
+}
+
+bool Relocaliser::agrees(const Located& located, std::span<const PlanarRegion> regions) const {
+    const KnownKeyframe* keyframe = known_.find(located.keyframe_id);
+    if (keyframe == nullptr) return false;
+    const Pose keyframe_from_camera = located.keyframe_from_camera();
+    int agree = 0, contradict = 0;
+    for (const PlanarRegion& region : regions.first(std::min<std::size_t>(regions.size(), kRegions))) {
+        const Plane seen = keyframe_from_camera * region.plane;
+        bool is_known = false, is_near = false;
+        for (const Plane& plane : keyframe->planes) {
+            const double angle = angle_between(seen.normal, plane.normal), off = std::abs(seen.d - plane.d);
+            is_known = is_known || (angle < kAngle && off < kOffset);
+            is_near = is_near || angle < kNearAngle;
+        }
+        agree += is_known;
+        contradict += !is_known && is_near;
+    }
+    return agree > 0 && agree >= contradict;
 }
 
 std::optional<Located> Relocaliser::locate(const PreparedFrame& frame, const CameraMotion& motion,

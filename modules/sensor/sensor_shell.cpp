@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iomanip>
+#include <planemap/module_status_t.hpp>
 #include <sstream>
 #include <stdexcept>
 
@@ -15,6 +16,7 @@
 #include "core/stamp.hpp"
 #include "core/validation.hpp"
 #include "messages/channels.hpp"
+#include "messages/decode.hpp"
 #include "messages/frame_decoder.hpp"
 
 namespace planemap::sensor {
@@ -39,6 +41,10 @@ SensorShell::SensorShell(messages::Bus& bus, std::unique_ptr<FrameSource> source
     if (options_.live) ahead_ = std::make_unique<ReadAhead>(source_);
     if (!options_.position.empty()) resume();
     if (bus_.session() != 0) sender_ = static_cast<std::uint64_t>(bus_.session());
+    if (!options_.live || !bus_.is_network()) return;
+    for (const char* module : {"SEGMENTATION", "ODOMETRY", "OCTOMAP"})
+        bus_.subscribe(std::string(messages::channels::kStatusPrefix) + module,
+                       [this](const messages::RawMessage& m) { on_status(m); });
 }
 
 /// The first fault of each kind is told at once; the status and the bus's complaints count them all.
@@ -162,6 +168,11 @@ void SensorShell::restamp(std::int64_t utime) {
     frame_.utime = utime;
 }
 
+/// Who was started just now needs the camera to use a frame: it is told at once.
+void SensorShell::on_status(const messages::RawMessage& message) {
+    if (messages::decode<module_status_t>(message.bytes).seq == 0) last_camera_wall_us_ = 0;
+}
+
 /// Reads how far the process before played the source.
 void SensorShell::resume() {
     std::error_code ignored;
@@ -255,7 +266,8 @@ OptionList pacing_of(SensorShellOptions& options) {
     list.add("speed", options.speed, {0, 1000},
              "Times the recorded speed; 0: as fast as the frames are taken");
     list.add("restamp", options.restamp,
-             "Stamp frames with the time at which they are due instead of their own: a recording as if it were live");
+             "Stamp frames with the time at which they are due instead of their own: a recording as if it "
+             "were live");
     return list;
 }
 

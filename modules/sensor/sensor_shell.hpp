@@ -28,13 +28,14 @@ struct SensorShellOptions {
     /// Throws std::invalid_argument that names every bad field.
     void validate() const;
 
-    /// How far the source was played is kept in this file, so that a process that is started again goes on there; empty:
-    /// in none. Frames of a camera have stamps of now: none is left out.
+    /// How far the source was played is kept in this file, so that a process that is started again goes on
+    /// there; empty: in none. Frames of a camera have stamps of now: none is left out.
     std::filesystem::path position;
 };
 
-/// Publishes a source's frames (OPENNI_FRAME) and its camera (PLANEMAP_CAMERA_INFO at the start and once a
-/// second). A fault of the source is logged when it is first seen, and counted.
+/// Publishes a source's frames (OPENNI_FRAME) and its camera (PLANEMAP_CAMERA_INFO at the start, once a
+/// second, and as a process of its own when a module on the network says that it was started just now). A
+/// fault of the source is logged when it is first seen, and counted.
 class SensorShell : public messages::Shell {
   public:
     SensorShell(messages::Bus& bus, std::unique_ptr<FrameSource> source, SensorShellOptions options);
@@ -70,6 +71,7 @@ class SensorShell : public messages::Shell {
     Read read();
     void resume();
     void keep_position();
+    void on_status(const messages::RawMessage& message);
     bool next(ReadResult& result);
     bool jumps() const;
     void count(const ReadResult& result);

@@ -298,7 +298,8 @@ TEST_F(MapShellTest, AProcessThatIsStartedAgainGoesOnWithItsMapAndDoublesNothing
         EXPECT_EQ(after.planes[i].inliers, before.planes[i].inliers);
         EXPECT_EQ(after.planes[i].center, before.planes[i].center);
     }
-    bus_.publish(messages::channels::kKeyframe, messages::to_message(keyframe, 0, 7));  // odometry sends it again
+    bus_.publish(messages::channels::kKeyframe,
+                 messages::to_message(keyframe, 0, 7));  // odometry sends it again
     bus_.drain();
     EXPECT_EQ(shell.mapper().map().planes[0].inliers, before.planes[0].inliers);
     EXPECT_EQ(shell.status().dropped_count(), 0);

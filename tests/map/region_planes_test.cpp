@@ -27,7 +27,8 @@ TEST(RegionPlanes, GiveThePlanesOfAnotherMapperTheirIds) {
     second.regions = {test::sample_region(1)};
     second.id = first.id + 1;
     KeyframeTrajectory trajectory;
-    trajectory.keyframes = {{first.id, first.utime, Pose::Identity()}, {second.id, second.utime, Pose::Identity()}};
+    trajectory.keyframes = {{first.id, first.utime, Pose::Identity()},
+                            {second.id, second.utime, Pose::Identity()}};
     PlaneMapper one, other;
     one.update(trajectory);
     one.add(second);
@@ -37,7 +38,9 @@ TEST(RegionPlanes, GiveThePlanesOfAnotherMapperTheirIds) {
     other.add(second);
     ASSERT_EQ(one.map().planes.size(), 2u);
     ASSERT_EQ(other.map().planes.size(), 2u);
-    const auto d_of = [](const PlaneMapper& mapper, std::size_t i) { return mapper.map().planes[i].center.z(); };
+    const auto d_of = [](const PlaneMapper& mapper, std::size_t i) {
+        return mapper.map().planes[i].center.z();
+    };
     ASSERT_NE(d_of(one, 0), d_of(other, 0)) << "the test needs other ids";
     other.restore_ids(one.planes_of_regions());
     for (std::size_t i = 0; i < 2; ++i) {

@@ -156,7 +156,8 @@ TEST_F(OctomapShellTest, AProcessThatIsStartedAgainHasTheDepthOfItsKeyframes) {
     files.output = folder / "out";
     std::size_t before = 0;
     {
-        OctomapShell killed(bus_, std::make_shared<messages::FrameDecoder>(bus_), {}, Building::kInHandler, files);
+        OctomapShell killed(bus_, std::make_shared<messages::FrameDecoder>(bus_), {}, Building::kInHandler,
+                            files);
         publish_camera();
         walk(3);
         bus_.drain();

@@ -253,7 +253,8 @@ TEST_F(OdometryShellTest, AProcessThatIsStartedAgainFindsItsPlaceOrBeginsAPartOf
         bus.subscribe(messages::channels::kKeyframe, [&](const messages::RawMessage& m) {
             last_id = messages::decode<keyframe_t>(m.bytes).id;
         });
-        for (int i = 0; i < 30; ++i) bus.publish(messages::channels::kFrame, frame(1000000 + 33333 * i, 0.01 * i));
+        for (int i = 0; i < 30; ++i)
+            bus.publish(messages::channels::kFrame, frame(1000000 + 33333 * i, 0.01 * i));
         bus.drain();
         killed.finish();
         bus.drain();

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// compare_maps A B [IOU]: exit code 0 when two plane_map.lcmlog hold the same map: the same number of planes, at
-// least one, each with a partner that agrees. With IOU: when each plane of A of 1 m2 and more has a partner in B within
-// 0.1 m and 5 deg whose outline overlaps it by so much. Prints every pair. For tests of whole programs.
+// compare_maps A B [IOU]: exit code 0 when two plane_map.lcmlog hold the same map: the same number of planes,
+// at least one, each with a partner that agrees. With IOU: when each plane of A of 1 m2 and more has a
+// partner in B within 0.1 m and 5 deg whose outline overlaps it by so much. Prints every pair. For tests of
+// whole programs.
 #include <cstdio>
 
 #include "evaluate/map_agreement.hpp"
@@ -19,7 +20,8 @@ int main(int argc, char** argv) {
         for (const planemap::PlanePair& pair : planemap::pair_planes(a, b)) {
             const bool agrees = pair.agrees({});
             agree += agrees;
-            const bool is_there = pair.id_b >= 0 && pair.distance_m <= 0.1 && pair.angle_deg <= 5 && pair.iou >= smallest_iou;
+            const bool is_there =
+                pair.id_b >= 0 && pair.distance_m <= 0.1 && pair.angle_deg <= 5 && pair.iou >= smallest_iou;
             missing += pair.id_a >= 0 && pair.area_m2 >= 1 && !is_there;
             worst_iou = std::min(worst_iou, pair.iou);
             std::printf("%s plane %d of %.2f m2: partner %d, %.4f m, %.3f deg, IoU %.3f\n",

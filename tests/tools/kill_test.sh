@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
 # kill_test.sh BIN COMPARE_MAPS [SECONDS [SEED]]: modules are killed (SIGKILL) at random moments for so long (default 12),
-# each at least once. Afterwards every one must have been started again, nothing may be left behind, and the map must have
+# each at least once, while a camera walks slowly. Afterwards every one must have been started again, nothing may be left behind, and the map must have
 # the planes of an undisturbed run: of those over 1 m2 each with a partner of the same place that overlaps it by half or
 # more (compare_maps). In a network of its own; exits with 77, ctest's code for a skipped test, where multicast cannot be
 # had.
@@ -12,8 +12,9 @@ compare_maps="$2"
 seconds="${3:-${PLANEMAP_KILL_SECONDS:-12}}"
 seed="${4:-7}"
 url="udpm://239.255.76.67:$((20000 + $$ % 20000))?ttl=0&recv_buf_size=4194304"
-input='sim:office?frames=180&width=320&height=240'
 rate=15
+# The input goes on for as long as the last round of kills may take.
+input="sim:office?frames=$((rate * (seconds + 14)))&width=320&height=240&speed=0.15&turn=8"
 smallest_iou=0.5
 
 source "$(dirname "${BASH_SOURCE[0]}")/own_network.sh"
@@ -44,9 +45,10 @@ declare -A kills=()
 SECONDS=0
 sleep 1.5
 while [[ "$SECONDS" -lt "$seconds" || "${#kills[@]}" -lt 6 ]]; do
-    for module in $(printf '%s\n' sensor segmentation odometry graph map octomap | while read -r name; do
-        echo "$RANDOM $name"
-    done | sort -n | cut -d' ' -f2); do
+    order=()
+    for name in sensor segmentation odometry graph map octomap; do order+=("$RANDOM $name"); done
+    mapfile -t order < <(printf '%s\n' "${order[@]}" | sort -n | cut -d' ' -f2)
+    for module in "${order[@]}"; do
         kill -0 "$launch_pid" 2>/dev/null || fail "planemap-launch ended"
         pid="$(process_of "$module")"
         if [[ -n "$pid" ]]; then
@@ -55,7 +57,6 @@ while [[ "$SECONDS" -lt "$seconds" || "${#kills[@]}" -lt 6 ]]; do
         fi
         sleep "$((1 + RANDOM % 2)).$((RANDOM % 10))"
     done
-    RANDOM="$((seed + SECONDS))"
 done
 
 # The recording is played to its end, and the run ends by itself.

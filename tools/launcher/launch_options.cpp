@@ -46,7 +46,8 @@ std::filesystem::path existing_part(std::filesystem::path path) {
 void check_folder(const std::filesystem::path& folder) {
     const std::filesystem::path there = existing_part(folder);
     if (!std::filesystem::is_directory(there)) {
-        throw std::runtime_error("the folder " + folder.string() + " cannot be made: " + there.string() + " is a file");
+        throw std::runtime_error("the folder " + folder.string() + " cannot be made: " + there.string() +
+                                 " is a file");
     }
     if (::access(there.c_str(), W_OK) != 0)
         throw std::runtime_error("the folder " + there.string() + " cannot be written to");
@@ -85,7 +86,8 @@ void LaunchOptions::add_to(messages::Flags& all) {
     all.add("speed", speed, "Times the recorded speed");
     all.add("channel", channel, "Of a log: the channel of the frames; default: the first that has depth");
     all.add("camera", camera,
-            "camera.json for a log that does not describe its camera, or instead of what INPUT says; with --no-sensor for "
+            "camera.json for a log that does not describe its camera, or instead of what INPUT says; with "
+            "--no-sensor for "
             "frames on the bus that nobody describes");
     all.add("record", record, ".oni file to record a live OpenNI2 camera to");
     all.add("repeat", repeat, "Begin an .oni file again at its end");
@@ -93,17 +95,22 @@ void LaunchOptions::add_to(messages::Flags& all) {
     all.add("no-sensor", no_sensor, "Only the modules, e.g. to replay a log into them with lcm-logplayer");
     all.add("no-octomap", no_octomap, "Without the OctoMap, which is there for comparison");
     all.add("log", log,
-            "Record all messages with lcm-logger; a file that is there is never written over. When its disk is full the "
+            "Record all messages with lcm-logger; a file that is there is never written over. When its disk "
+            "is full the "
             "recording ends, which is said, and the modules go on");
-    all.add("o,output", output,
-            "Where the map goes as plane_map.lcmlog, and the other results at the end; an earlier map is kept as "
-            "plane_map.earlier-DATE-N.lcmlog once there are planes to write, the newest five");
-    all.add("resume", resume, "Go on with the state of the last run, in its world frame; without it a run starts anew");
+    all.add(
+        "o,output", output,
+        "Where the map goes as plane_map.lcmlog, and the other results at the end; an earlier map is kept as "
+        "plane_map.earlier-DATE-N.lcmlog once there are planes to write, the newest five");
+    all.add("resume", resume,
+            "Go on with the state of the last run, in its world frame; without it a run starts anew");
     all.add("state", state,
-            "Folder for what the modules go on with after a restart or a power cut (default: state in the output folder)");
+            "Folder for what the modules go on with after a restart or a power cut (default: state in the "
+            "output folder)");
     all.add("l,lcm-url", lcm_url, "The bus");
     all.add("channel-prefix", channel_prefix,
-            "Begins the name of every channel, for two cameras or robots on one bus; --log records those channels");
+            "Begins the name of every channel, for two cameras or robots on one bus; --log records those "
+            "channels");
     all.add("bin", bin, "The folder of the modules' programs (default: where this program is)");
     for (const char* module : kModules)
         all.add(std::string(module) + "-flags", flags[module],
@@ -151,7 +158,8 @@ std::vector<std::string> LaunchOptions::command(const std::string& module) const
     std::vector<std::string> all = {program(module).string()};
     for (std::string& flag : own_flags(module)) all.push_back(std::move(flag));
     all.push_back("--state=" + state_folder().string());
-    if (module == "graph" || module == "map" || module == "octomap") all.push_back("--output=" + output.string());
+    if (module == "graph" || module == "map" || module == "octomap")
+        all.push_back("--output=" + output.string());
     return all;
 }
 
@@ -167,7 +175,8 @@ void LaunchOptions::check() const {
     if (no_sensor && !input.empty())
         throw std::runtime_error("--no-sensor takes no INPUT, and " + input + " was given");
     for (const auto& [name, value] : sensor_flags())
-        if (no_sensor) throw std::runtime_error("--" + name + " is for the sensor, and --no-sensor was given");
+        if (no_sensor)
+            throw std::runtime_error("--" + name + " is for the sensor, and --no-sensor was given");
     check_modules();
     check_files();
 }

@@ -28,8 +28,9 @@ struct LaunchOptions {
 
     void add_to(messages::Flags& all);
 
-    /// Throws std::runtime_error naming what is wrong: a program that is missing, an input that cannot be opened, a
-    /// wrong flag, a log that is there already, a folder that cannot be one. Starts and touches nothing.
+    /// Throws std::runtime_error naming what is wrong: a program that is missing, an input that cannot be
+    /// opened, a wrong flag, a log that is there already, a folder that cannot be one. Starts and touches
+    /// nothing.
     void check() const;
 
     /// Modules that are to run, in the order of kModules.
@@ -48,7 +49,8 @@ struct LaunchOptions {
     void check_files() const;
 };
 
-/// Runs a program to its end, its standard output thrown away; returns its exit code, 127 if there is none such.
+/// Runs a program to its end, its standard output thrown away; returns its exit code, 127 if there is none
+/// such.
 int run_to_end(const std::vector<std::string>& command);
 
 }  // namespace planemap::launcher

@@ -19,10 +19,10 @@ using namespace std::chrono_literals;
 constexpr const char* kLogger = "logger";
 constexpr Clock::duration kPoll = 50ms;
 constexpr Clock::duration kUntilAllListen = 10s;
-constexpr Clock::duration kWithoutCount = 2s;   // where it cannot be counted who listens
-constexpr Clock::duration kPatience = 10s;      // with each process, at the end of the input
-constexpr Clock::duration kQuick = 1400ms;      // for all of them, after a signal: then they are killed
-constexpr Clock::duration kPipeline = 2s;       // in which the last frames become planes, at the end of the input
+constexpr Clock::duration kWithoutCount = 2s;  // where it cannot be counted who listens
+constexpr Clock::duration kPatience = 10s;     // with each process, at the end of the input
+constexpr Clock::duration kQuick = 1400ms;     // for all of them, after a signal: then they are killed
+constexpr Clock::duration kPipeline = 2s;  // in which the last frames become planes, at the end of the input
 constexpr Clock::duration kPipelineQuick = 100ms;
 
 /// Sockets of this network that receive on the URL's port. Every module has one as soon as it has subscribed.
@@ -118,11 +118,14 @@ bool LiveRun::wait_for_listeners(std::size_t others) {
             return false;
         }
     }
-    if (can_count) spdlog::warn("not all modules listen on {} after {}; going on", options_.lcm_url, seconds(kUntilAllListen));
+    if (can_count)
+        spdlog::warn("not all modules listen on {} after {}; going on", options_.lcm_url,
+                     seconds(kUntilAllListen));
     return true;
 }
 
-/// Whether a process's end is the run's: that of the input is, and that of a sensor that says why it cannot go on.
+/// Whether a process's end is the run's: that of the input is, and that of a sensor that says why it cannot
+/// go on.
 bool LiveRun::is_over(const Ending& ending) {
     if (ending.name == kLogger) {
         logger_ended();
@@ -138,14 +141,15 @@ bool LiveRun::is_over(const Ending& ending) {
 
 void LiveRun::restart(const Ending& ending) {
     const Clock::duration delay = supervisor_.restart_later(ending);
-    spdlog::warn("{} {} after {}; it is started again in {}", ending.name, ending.text(), seconds(ending.lived),
-                 seconds(delay));
+    spdlog::warn("{} {} after {}; it is started again in {}", ending.name, ending.text(),
+                 seconds(ending.lived), seconds(delay));
 }
 
 /// The recorder is no module: where it ends, by a full disk above all, only the recording does.
 void LiveRun::logger_ended() {
     exit_code_ = 1;
-    recording_ = "lcm-logger ended, is the disk of " + options_.log.string() + " full? The recording ends there";
+    recording_ =
+        "lcm-logger ended, is the disk of " + options_.log.string() + " full? The recording ends there";
     spdlog::error("{}; the modules go on", recording_);
 }
 
@@ -159,14 +163,16 @@ void LiveRun::stop_all(bool in_a_hurry) {
     const bool had_input = !options_.no_sensor;
     for (std::size_t i = 0; i < order.size(); ++i) {
         const auto share = (all_until - Clock::now()) / static_cast<int>(order.size() - i);
-        stop(order[i], in_a_hurry ? std::max(Clock::now(), Clock::now() + 2 * share) : Clock::now() + kPatience);
+        stop(order[i],
+             in_a_hurry ? std::max(Clock::now(), Clock::now() + 2 * share) : Clock::now() + kPatience);
         if (order[i] != "sensor" || !had_input) continue;
         const Clock::time_point drained = Clock::now() + (in_a_hurry ? kPipelineQuick : kPipeline);
         while (Clock::now() < drained && supervisor_.stop_signals() == signals) supervisor_.wait(drained);
         in_a_hurry = in_a_hurry || supervisor_.stop_signals() > signals;
     }
     while (supervisor_.running() > 0 && Clock::now() < all_until) supervisor_.wait(all_until);
-    for (const std::string& name : supervisor_.kill_all()) fail(name + " did not stop in time and was killed");
+    for (const std::string& name : supervisor_.kill_all())
+        fail(name + " did not stop in time and was killed");
 }
 
 /// SIGTERM, and its end awaited until then.
@@ -192,7 +198,8 @@ void LiveRun::summarise() {
     std::string cores;
     for (const auto& [name, cpu_s] : supervisor_.cpu_s()) {
         char text[64];
-        std::snprintf(text, sizeof(text), "%s%s %.2f", cores.empty() ? "" : ", ", name.c_str(), cpu_s / ran_s);
+        std::snprintf(text, sizeof(text), "%s%s %.2f", cores.empty() ? "" : ", ", name.c_str(),
+                      cpu_s / ran_s);
         cores += text;
     }
     spdlog::info("cores used in {}: {}", seconds(Clock::now() - began_), cores);
@@ -205,11 +212,13 @@ void LiveRun::summarise() {
 
 /// What planemap-run leaves beside the map, where the program for it is.
 void LiveRun::export_results() {
-    const std::filesystem::path program = options_.bin / "planemap-export", map = options_.output / "plane_map.lcmlog";
+    const std::filesystem::path program = options_.bin / "planemap-export",
+                                map = options_.output / "plane_map.lcmlog";
     std::error_code error;
     const auto written = std::filesystem::last_write_time(map, error);
     if (error || written < started_ || !std::filesystem::exists(program)) return;
-    if (run_to_end({program.string(), map.string(), "--output=" + options_.output.string(), "--replace", "--quiet"}) != 0)
+    if (run_to_end({program.string(), map.string(), "--output=" + options_.output.string(), "--replace",
+                    "--quiet"}) != 0)
         fail(program.string() + " failed: beside the map, no results were written");
 }
 

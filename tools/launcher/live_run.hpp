@@ -15,9 +15,9 @@ class LiveRun {
     /// Precondition: options.check() passed, and Supervisor::block_signals() was called.
     explicit LiveRun(LaunchOptions options);
 
-    /// Starts the modules, watches them until the input ends or a stop signal comes, and stops them. After a signal
-    /// that takes less than two seconds. Returns the exit code. Throws std::runtime_error if another run has the
-    /// output folder.
+    /// Starts the modules, watches them until the input ends or a stop signal comes, and stops them. After a
+    /// signal that takes less than two seconds. Returns the exit code. Throws std::runtime_error if another
+    /// run has the output folder.
     int run();
 
   private:

@@ -8,14 +8,17 @@
 int main(int argc, char** argv) {
     planemap::messages::Flags flags(
         "planemap-launch",
-        "Starts sensor, segmentation, odometry, graph, map and octomap as processes that talk over LCM, and starts a "
-        "module\nagain that dies. Ctrl-C, or the end of the input, stops them in order, each after what it waits for.\n"
+        "Starts sensor, segmentation, odometry, graph, map and octomap as processes that talk over LCM, and "
+        "starts a "
+        "module\nagain that dies. Ctrl-C, or the end of the input, stops them in order, each after what it "
+        "waits for.\n"
         "\nRecord, and map again from the recording:\n"
         "  planemap-launch --log logs/office.lcmlog\n"
         "  planemap-launch --no-sensor --output out/again &\n"
         "  lcm-logplayer --lcm-url='udpm://239.255.76.67:7667?ttl=0&recv_buf_size=4194304' \\\n"
         "      -e 'OPENNI_FRAME|PLANEMAP_CAMERA_INFO' logs/office.lcmlog\n"
-        "A frame is larger than the receive buffer that LCM asks for by itself: keep recv_buf_size in the URL.");
+        "A frame is larger than the receive buffer that LCM asks for by itself: keep recv_buf_size in the "
+        "URL.");
     planemap::launcher::LaunchOptions options;
     options.add_to(flags);
     const int parsed = flags.parse(argc, argv);

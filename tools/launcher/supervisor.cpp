@@ -80,7 +80,8 @@ void Supervisor::start(const std::string& name, const std::vector<std::string>& 
 Clock::duration Supervisor::restart_later(const Ending& ending) {
     const auto before = back_off_.find(ending.name);
     const bool is_new_trouble = before == back_off_.end() || ending.lived >= kSoundLife;
-    const Clock::duration delay = is_new_trouble ? kFirstBackOff : std::min(2 * before->second, kLongestBackOff);
+    const Clock::duration delay =
+        is_new_trouble ? kFirstBackOff : std::min(2 * before->second, kLongestBackOff);
     back_off_[ending.name] = delay;
     due_[ending.name] = Clock::now() + delay;
     return delay;

@@ -17,15 +17,15 @@ using Clock = std::chrono::steady_clock;
 /// How a process ended.
 struct Ending {
     std::string name;
-    int code = 0;                      ///< exit code; 128 + signal
+    int code = 0;  ///< exit code; 128 + signal
     bool by_signal = false;
     Clock::duration lived{};
     std::string text() const;  ///< "was killed by signal 9 (Killed)", "ended with code 1"
 };
 
-/// Processes that are started, watched, and started again when they die. Each is in a session of its own, so that a
-/// terminal's Ctrl-C reaches the supervisor alone, and is told to stop should the supervisor be killed. Before the
-/// first start(), block_signals() must have been called. On one thread.
+/// Processes that are started, watched, and started again when they die. Each is in a session of its own, so
+/// that a terminal's Ctrl-C reaches the supervisor alone, and is told to stop should the supervisor be
+/// killed. Before the first start(), block_signals() must have been called. On one thread.
 class Supervisor {
   public:
     /// Blocks the signals that wait() takes (SIGINT, SIGTERM, SIGHUP, SIGCHLD) for the whole process.
@@ -33,12 +33,12 @@ class Supervisor {
 
     /// Starts a process under a name; one that runs under it already is an error.
     void start(const std::string& name, const std::vector<std::string>& command);
-    /// Starts it again after its back-off: 0.5 s after its first end, doubled each time to at most 10 s, and from the
-    /// beginning again after it lived for half a minute. Returns the delay.
+    /// Starts it again after its back-off: 0.5 s after its first end, doubled each time to at most 10 s, and
+    /// from the beginning again after it lived for half a minute. Returns the delay.
     Clock::duration restart_later(const Ending& ending);
 
-    /// Waits until a process ends, a stop signal comes (stopping() is true then), or the time has come; starts what is
-    /// due meanwhile. Returns the process that ended.
+    /// Waits until a process ends, a stop signal comes (stopping() is true then), or the time has come;
+    /// starts what is due meanwhile. Returns the process that ended.
     std::optional<Ending> wait(Clock::time_point until);
     /// A stop signal came; and how many.
     int stop_signals() const { return stop_signals_; }
