@@ -123,20 +123,6 @@ void OctomapBuilder::mark_dirty(const std::vector<Voxel>& blocks) {
     for (const Voxel& block : blocks) dirty_.insert(block);
 }
 
-std::vector<Eigen::Vector3d> OctomapBuilder::occupied_voxels() const {
-    std::vector<Eigen::Vector3d> centres;
-    const double edge = options_.resolution_m;
-    for (auto leaf = tree_->begin_leafs(), end = tree_->end_leafs(); leaf != end; ++leaf) {
-        if (!tree_->isNodeOccupied(*leaf)) continue;
-        const int n = 1 << (tree_->getTreeDepth() - leaf.getDepth());
-        const Eigen::Vector3d centre(leaf.getX(), leaf.getY(), leaf.getZ());
-        const Eigen::Vector3d first = centre - Eigen::Vector3d::Constant(0.5 * edge * (n - 1));
-        for (int i = 0; i < n * n * n; ++i)
-            centres.push_back(first + edge * Eigen::Vector3d(i % n, i / n % n, i / (n * n)));
-    }
-    return centres;
-}
-
 std::size_t OctomapBuilder::working_bytes() const {
     std::size_t bytes = stored_bytes() + tracer_.memory_bytes() + tree_->memoryUsage();
     if (base_) bytes += base_->memoryUsage();

@@ -82,7 +82,7 @@ class OctomapBuilder {
     /// The bytes of an .ot file.
     std::string ot() const { return ot_of(*tree_); }
     /// Centres of all occupied cells of the smallest leaf's size, world frame, metres.
-    std::vector<Eigen::Vector3d> occupied_voxels() const;
+    std::vector<Eigen::Vector3d> occupied_voxels() const { return occupied_voxels_of(*tree_); }
 
     /// Points of a voxel cloud: number of voxels of the given edge that hold at least one point of the kept
     /// depth images at their newest poses.

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "octomap/octomap_sizes.hpp"
 
+#include <fstream>
 #include <sstream>
+#include <stdexcept>
 #include <vector>
 
 namespace planemap::octomap {
@@ -152,6 +154,31 @@ std::string ot_of(const ::octomap::OcTree& tree) {
     out << header(kOtKind, tree, tree.size());
     tree.writeData(out);
     return std::move(out).str();
+}
+
+std::vector<Eigen::Vector3d> occupied_voxels_of(const ::octomap::OcTree& tree) {
+    std::vector<Eigen::Vector3d> centres;
+    const double edge = tree.getResolution();
+    for (auto leaf = tree.begin_leafs(), end = tree.end_leafs(); leaf != end; ++leaf) {
+        if (!tree.isNodeOccupied(*leaf)) continue;
+        const int n = 1 << (tree.getTreeDepth() - leaf.getDepth());
+        const Eigen::Vector3d centre(leaf.getX(), leaf.getY(), leaf.getZ());
+        const Eigen::Vector3d first = centre - Eigen::Vector3d::Constant(0.5 * edge * (n - 1));
+        for (int i = 0; i < n * n * n; ++i)
+            centres.push_back(first + edge * Eigen::Vector3d(i % n, i / n % n, i / (n * n)));
+    }
+    return centres;
+}
+
+std::unique_ptr<::octomap::OcTree> read_bt(const std::filesystem::path& file) {
+    std::ifstream bytes(file, std::ios::binary);
+    std::string kind;
+    std::getline(bytes, kind);  // what is no tree is seen here: readBinary() prints
+    bytes.seekg(0);
+    auto tree = std::make_unique<::octomap::OcTree>(1);
+    if (kind != kBtKind || !tree->readBinary(bytes))
+        throw std::runtime_error(file.string() + ": is no OctoMap (.bt)");
+    return tree;
 }
 
 }  // namespace planemap::octomap

@@ -3,8 +3,12 @@
 
 #include <octomap/OcTree.h>
 
+#include <Eigen/Core>
 #include <cstddef>
+#include <filesystem>
+#include <memory>
 #include <string>
+#include <vector>
 
 namespace planemap::octomap {
 
@@ -32,5 +36,11 @@ std::string bt_of(const ::octomap::OcTree& tree);
 std::string bt_occupied_of(const ::octomap::OcTree& tree);
 /// The bytes of an .ot file.
 std::string ot_of(const ::octomap::OcTree& tree);
+
+/// Centres of all occupied cells of the smallest leaf's size, in the tree's frame, metres.
+std::vector<Eigen::Vector3d> occupied_voxels_of(const ::octomap::OcTree& tree);
+
+/// The tree of a .bt file. Throws std::runtime_error naming the file if it cannot be read as one.
+std::unique_ptr<::octomap::OcTree> read_bt(const std::filesystem::path& file);
 
 }  // namespace planemap::octomap

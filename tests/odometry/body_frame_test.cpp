@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace planemap::odometry {
 namespace {
 
@@ -74,7 +76,7 @@ TEST(BodyFrame, ByCameraFileMovesAsTheBodyDoes) {
 
     // The same after the robot turned left by a right angle: velocity in the local frame, rates in the
     // body's.
-    const Pose local_from_body(Eigen::AngleAxisd(0.5 * EIGEN_PI, Vector3d::UnitZ()));
+    const Pose local_from_body(Eigen::AngleAxisd(M_PI_2, Vector3d::UnitZ()));
     moving.odom_from_camera = body.local_from_odom().inverse() * local_from_body * body_from_camera;
     motion = body.motion(moving);
     EXPECT_NEAR((motion.velocity_local - Vector3d(0, 1, 0)).norm(), 0, 1e-9)

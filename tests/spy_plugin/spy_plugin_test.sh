@@ -36,6 +36,7 @@ Xvfb -displayfd 3 -screen 0 1280x800x24 3>"$work/display" 2>/dev/null &
 started+=($!)
 for ((i = 0; i < 100; i++)); do [[ -s "$work/display" ]] && break || sleep 0.1; done
 [[ -s "$work/display" ]] || fail "Xvfb does not start"
+: >"$work/spy.txt"
 DISPLAY=":$(cat "$work/display")" "$source/tools/spy" map depth --no-viewer --lcm-url 'udpm://239.255.76.67:7683?ttl=0' \
     >"$work/spy.txt" 2>&1 &
 spy=$!

@@ -45,7 +45,7 @@ TEST_F(ExportTest, GivesWhatTheRunGave) {
     EXPECT_EQ(without_keyframes(bytes("run/planes.json")), without_keyframes(bytes("out/planes.json")));
     EXPECT_TRUE(Json::parse(bytes("out/planes.json")).at("planes").at(0).at("keyframes").is_null());
     const Json of_run = report("run"), exported = report("out");
-    for (const char* key : {"plane_map_memory", "plane_map_message", "plane_map_zstd"})
+    for (const char* key : {"plane_map_memory", "plane_map_message"})
         EXPECT_EQ(of_run.at("sizes_bytes").at(key), exported.at("sizes_bytes").at(key)) << key;
     EXPECT_EQ(exported.at("tracked"), of_run.at("tracked"));
     EXPECT_TRUE(exported.at("frames").is_null());
@@ -65,15 +65,32 @@ TEST_F(ExportTest, KeepsWhatIsNotItsOwn) {
     // As a live session leaves a folder.
     std::filesystem::create_directory(folder_ / "live");
     std::filesystem::copy(folder_ / "run/plane_map.lcmlog", folder_ / "live");
-    write_file(folder_ / "live/octomap.bt", "of the same session");
+    write_file(folder_ / "live/octomap.bt", "of the same session");  // as far as anyone can tell
     for (int time = 0; time < 2; ++time) {
         const Outcome outcome = run("planemap-export", path("live/plane_map.lcmlog") + " -o " + path("live"));
         ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
         EXPECT_THAT(outcome.out, HasSubstr("no trajectory"));
+        EXPECT_THAT(outcome.err, HasSubstr("octomap.bt: is no OctoMap (.bt)"));
     }
     EXPECT_EQ(bytes("live/octomap.bt"), "of the same session");
     EXPECT_FALSE(std::filesystem::exists(folder_ / "live/trajectory.txt"));
     EXPECT_EQ(bytes("live/planes.json"), bytes("run/planes.json"));
+}
+
+TEST_F(ExportTest, ComparesWithTheOctomapBesideTheMap) {
+    ASSERT_EQ(run("planemap-run", "'sim:office?frames=20' -q -o " + path("run")).exit_code, 0);
+    ASSERT_EQ(run("planemap-export", path("run/plane_map.lcmlog") + " -q -o " + path("out")).exit_code, 0);
+    const Json of_run = report("run"), exported = report("out");
+    for (const char* key : {"octomap_bt", "octomap_bt_zstd", "octomap_bt_memory"})
+        EXPECT_EQ(of_run.at("sizes_bytes").at(key), exported.at("sizes_bytes").at(key)) << key;
+    EXPECT_TRUE(exported.at("sizes_bytes").at("octomap_working").is_null());
+    EXPECT_EQ(of_run.at("octomap").at("resolution_m"), exported.at("octomap").at("resolution_m"));
+    for (const char* key : {"leaves_explained", "area_supported"}) {
+        EXPECT_NEAR(of_run.at("coverage").at(key).get<double>(),
+                    exported.at("coverage").at(key).get<double>(), 1e-6)
+            << key;
+    }
+    EXPECT_THAT(bytes("out/report.md"), HasSubstr("Every ratio below is at that coverage"));
 }
 
 TEST_F(ExportTest, BadInputIsOneLine) {

@@ -67,8 +67,21 @@ void require_ours(const ExportOptions& options, const std::vector<std::string>& 
     }
 }
 
+/// The OctoMap of the same session, where it lies beside the map.
+void add_octomap_beside(const ExportOptions& options, const PlaneMap& map, std::vector<std::string>& warnings,
+                        Json& report) {
+    const fs::path beside = options.map.parent_path() / "octomap.bt";
+    std::error_code ignored;
+    if (!fs::exists(beside, ignored)) return;
+    try {
+        add_stored_octomap(beside, map, report);
+    } catch (const std::runtime_error& error) {
+        warnings.push_back(std::string(error.what()) + ": there is nothing to compare the map's size with");
+    }
+}
+
 Json report_of(const ExportOptions& options, const PlaneMap& map, const Trajectory* trajectory,
-               const std::vector<std::string>& warnings, const Json& about) {
+               std::vector<std::string>& warnings, const Json& about) {
     Json report;
     report["input"] = options.map.string();
     report["exported"] = true;
@@ -81,6 +94,7 @@ Json report_of(const ExportOptions& options, const PlaneMap& map, const Trajecto
         report[key] = nullptr;
     report["complaints"] = Json::array();
     add_map_sizes(map, report);
+    add_octomap_beside(options, map, warnings, report);
     report["warnings"] = warnings;
     report.update(about);
     return report;

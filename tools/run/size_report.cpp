@@ -32,26 +32,32 @@ std::size_t zstd_bytes(std::string_view bytes) {
     return size;
 }
 
-void add_octomap(const octomap::OctomapBuilder& builder, const PlaneMap& map, Json& sizes, Json& report) {
-    const octomap::OctomapSizes s = builder.sizes();
-    sizes["octomap_memory"] = s.memory_bytes;
+/// What a tree tells of itself, whether it was built or read from its file.
+void add_tree(const ::octomap::OcTree& tree, const octomap::OctomapSizes& s, const PlaneMap& map, Json& sizes,
+              Json& report) {
     sizes["octomap_bt"] = s.bt_bytes;
-    sizes["octomap_ot"] = s.ot_bytes;
     sizes["octomap_occupied_leaves"] = points_bytes(static_cast<double>(s.occupied_leaves));
-    sizes["voxel_cloud_1cm"] = points_bytes(static_cast<double>(builder.voxel_cloud_size(0.01)));
     sizes["octomap_bt_memory"] = s.bt_loaded_memory_bytes;
     sizes["octomap_bt_occupied"] = s.bt_occupied_bytes;
-    sizes["octomap_bt_zstd"] = zstd_bytes(builder.bt());
-    sizes["octomap_bt_occupied_zstd"] = zstd_bytes(builder.bt_occupied());
-    sizes["octomap_working"] = builder.working_bytes();
-    const double resolution = builder.tree().getResolution();
+    sizes["octomap_bt_zstd"] = zstd_bytes(octomap::bt_of(tree));
+    sizes["octomap_bt_occupied_zstd"] = zstd_bytes(octomap::bt_occupied_of(tree));
+    const double resolution = tree.getResolution();
     report["octomap"] = {{"resolution_m", resolution},
                          {"nodes", s.nodes},
                          {"leaves", s.leaves},
-                         {"occupied_leaves", s.occupied_leaves},
-                         {"rebuilds", builder.rebuilds()}};
-    const Coverage c = coverage_of(map, builder.occupied_voxels(), resolution);
+                         {"occupied_leaves", s.occupied_leaves}};
+    const Coverage c = coverage_of(map, octomap::occupied_voxels_of(tree), resolution);
     report["coverage"] = {{"leaves_explained", c.leaves_explained}, {"area_supported", c.area_supported}};
+}
+
+void add_octomap(const octomap::OctomapBuilder& builder, const PlaneMap& map, Json& sizes, Json& report) {
+    const octomap::OctomapSizes s = builder.sizes();
+    sizes["octomap_memory"] = s.memory_bytes;
+    sizes["octomap_ot"] = s.ot_bytes;
+    sizes["voxel_cloud_1cm"] = points_bytes(static_cast<double>(builder.voxel_cloud_size(0.01)));
+    sizes["octomap_working"] = builder.working_bytes();
+    add_tree(builder.tree(), s, map, sizes, report);
+    report["octomap"]["rebuilds"] = builder.rebuilds();
 }
 
 std::string bytes_text(double bytes) {
@@ -186,6 +192,11 @@ void add_sizes(pipeline::Pipeline& pipeline, std::int64_t frames, Json& report) 
     sizes["plane_map_working"] = mapper.working_bytes() + mapper.memory_bytes();
     if (pipeline.octomap() != nullptr)
         add_octomap(pipeline.octomap()->builder(), mapper.map(), sizes, report);
+}
+
+void add_stored_octomap(const std::filesystem::path& bt_file, const PlaneMap& map, Json& report) {
+    const std::unique_ptr<::octomap::OcTree> tree = octomap::read_bt(bt_file);
+    add_tree(*tree, octomap::sizes_of(*tree), map, report["sizes_bytes"], report);
 }
 
 std::string sizes_markdown(const Json& report) {

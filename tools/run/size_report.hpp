@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
@@ -17,6 +18,12 @@ class Pipeline;
 
 /// Adds "sizes_bytes", "octomap" and "coverage"; what the map alone does not tell is null.
 void add_map_sizes(const PlaneMap& map, nlohmann::ordered_json& report);
+
+/// Adds what an OctoMap's .bt file of the same depth and poses tells, to a report with the map's sizes: its
+/// sizes but those of the tree that it was written from, and the coverage. Throws std::runtime_error naming
+/// the file if it cannot be read; the report is then as it was.
+void add_stored_octomap(const std::filesystem::path& bt_file, const PlaneMap& map,
+                        nlohmann::ordered_json& report);
 
 /// The same of a run; what there is no OctoMap for is null.
 void add_sizes(pipeline::Pipeline& pipeline, std::int64_t frames, nlohmann::ordered_json& report);

@@ -14,7 +14,6 @@ import java.awt.geom.Point2D;
 import java.awt.geom.Rectangle2D;
 import java.util.ArrayList;
 import java.util.List;
-import java.util.Locale;
 import javax.swing.JPanel;
 import planemap.map_plane_t;
 import planemap.plane_map_t;
@@ -193,6 +192,6 @@ final class MapPanel extends JPanel {
         g.drawLine(x, y, end, y);
         g.drawLine(x, y - 4, x, y + 4);
         g.drawLine(end, y - 4, end, y + 4);
-        g.drawString((length < 1 ? String.format(Locale.ROOT, "%.2g", length) : Long.toString(Math.round(length))) + " m", x, y - 8);
+        g.drawString((length < 1 ? Float.toString((float) length) : Long.toString(Math.round(length))) + " m", x, y - 8);
     }
 }
