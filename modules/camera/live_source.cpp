@@ -25,8 +25,9 @@ LiveSource::LiveSource(Open open) : open_(std::move(open)), opened_(open_({})) {
 }
 
 void LiveSource::close(const std::string& why) {
-    opened_.reset();
     trouble_ = name_ + ": " + why;
+    if (const std::string ending = opened_->ending(); !ending.empty()) trouble_ += "; " + ending;
+    opened_.reset();
     patience_ = kFirstPatience;
     retry_at_ = Clock::now() + patience_;
 }

@@ -32,6 +32,8 @@ class LiveCamera {
     virtual std::string serial() const = 0;  ///< empty if it has none
     /// What was asked for and could not be had, and what was assumed; a line each.
     virtual std::vector<std::string> notes() const = 0;
+    /// What ends with this opening (a recording); empty for nothing.
+    virtual std::string ending() const { return {}; }
     virtual bool is_unplugged() const = 0;
     virtual std::chrono::milliseconds silence() const = 0;  ///< how long no depth has come
     /// The next frame; nothing if none comes within `wait`. Adds what was lost.

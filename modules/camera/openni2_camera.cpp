@@ -122,8 +122,9 @@ void OpenNi2Camera::find(const std::string& wanted) {
     for (const openni::DeviceInfo& info : devices()) {
         const bool by_uri = wanted == info.getUri();
         if (device_.open(info.getUri()) != openni::STATUS_OK) {
-            refusal =
-                std::string(info.getName()) + " (" + info.getUri() + ") cannot be opened: " + openni2_error();
+            if (wanted.empty() || by_uri)
+                refusal = std::string(info.getName()) + " (" + info.getUri() +
+                          ") cannot be opened: " + openni2_error();
             continue;
         }
         serial_ = serial_of(device_);

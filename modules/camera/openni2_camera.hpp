@@ -29,6 +29,9 @@ class OpenNi2Camera : public LiveCamera {
     std::string name() const override { return name_; }
     std::string serial() const override { return serial_; }
     std::vector<std::string> notes() const override { return notes_; }
+    std::string ending() const override {
+        return recording_.empty() ? "" : "the recording ends here: " + recording_.string();
+    }
     bool is_unplugged() const override { return unplugged_; }
     std::chrono::milliseconds silence() const override { return frames_.silence(); }
     std::optional<LiveFrame> next(std::chrono::milliseconds wait, Losses& lost) override;
