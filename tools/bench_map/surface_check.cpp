@@ -71,7 +71,7 @@ std::vector<SurfaceCheck> check_surfaces(const std::string& input_name, std::int
                                          const Trajectory& truth) {
     SurfaceChecker checker(map);
     messages::Bus bus("memq://");
-    messages::FrameDecoder decoder(bus, {.camera = camera});
+    messages::FrameDecoder decoder(bus, camera);
     std::int64_t count = 0;
     bus.subscribe(messages::channels::kFrame, [&](const messages::RawMessage& message) {
         if (count++ % kEvery != 0) return;

@@ -13,6 +13,7 @@
 #include "convert/layout_source.hpp"
 #include "convert/shrunk_color.hpp"
 #include "convert/tum_folder.hpp"
+#include "core/stamp.hpp"
 #include "core/standard_output.hpp"
 #include "core/validation.hpp"
 #include "messages/decode.hpp"
@@ -134,12 +135,18 @@ TumFolder write_log(std::unique_ptr<FrameSource> source, const Trajectory& truth
     Watch watch(*source, options.quiet);
     sensor::SensorShell sensor(bus, std::move(source), options.encoding);
     std::size_t next_pose = 0;
-    record(sensor, bus, 0, file.part(), [&](std::int64_t frames) {
-        for (; next_pose < truth.size() && truth[next_pose].utime <= sensor.last_utime(); ++next_pose)
+    const auto publish_truth = [&](std::int64_t until) {
+        for (; next_pose < truth.size() && truth[next_pose].utime <= until; ++next_pose)
             bus.publish(kTruthChannel, pose_message(truth[next_pose]));
-        bus.drain();
-        watch(frames + sensor.broken());
-    });
+    };
+    record(
+        sensor, bus, 0, file.part(),
+        [&](std::int64_t frames) {
+            publish_truth(sensor.last_utime());
+            bus.drain();
+            watch(frames + sensor.broken());
+        },
+        [&] { publish_truth(kFarthestUtime); });
     watch.end();
     if (messages::stop_requested())
         throw std::runtime_error(output.string() + ": stopped; nothing was written");

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "convert/tum_folder.hpp"
 
-#include <unistd.h>
-
 #include <cstdio>
 #include <set>
 #include <stdexcept>
@@ -10,6 +8,7 @@
 
 #include "core/camera_file.hpp"
 #include "core/files.hpp"
+#include "results/new_file.hpp"
 #include "sensor/png.hpp"
 
 namespace planemap::convert {
@@ -17,42 +16,6 @@ namespace planemap::convert {
 namespace fs = std::filesystem;
 
 namespace {
-
-/// A folder that comes together beside its name.
-class NewFolder {
-  public:
-    explicit NewFolder(fs::path folder) : folder_(std::move(folder)) {
-        if (folder_.filename().empty()) folder_ = folder_.parent_path();
-        require_absent();
-        const fs::path parent = folder_.has_parent_path() ? folder_.parent_path() : ".";
-        part_ = parent / ("." + folder_.filename().string() + "." + std::to_string(::getpid()) + ".part");
-        fs::create_directories(part_ / "depth");
-    }
-    ~NewFolder() {
-        std::error_code ignored;
-        if (!part_.empty()) fs::remove_all(part_, ignored);
-    }
-    NewFolder(const NewFolder&) = delete;
-    NewFolder& operator=(const NewFolder&) = delete;
-    const fs::path& part() const { return part_; }
-    void put_in_place() {
-        require_absent();
-        fs::rename(part_, folder_);
-        part_.clear();
-    }
-
-  private:
-    /// An empty folder may stand there: renaming replaces it.
-    void require_absent() const {
-        std::error_code ignored;
-        if (!fs::exists(fs::symlink_status(folder_, ignored))) return;
-        if (fs::is_directory(folder_, ignored) && fs::is_empty(folder_, ignored)) return;
-        throw std::runtime_error(folder_.string() +
-                                 ": is there already, and is not written over: give another --output");
-    }
-
-    fs::path folder_, part_;
-};
 
 std::string stamp_text(std::int64_t utime) {
     char text[40];
@@ -115,6 +78,7 @@ TumFolder write_tum_folder(FrameSource& source, const Trajectory& truth, const f
                            const std::function<bool(std::int64_t)>& go_on,
                            const std::function<void(const std::string&)>& say) {
     NewFolder target(folder);
+    fs::create_directories(target.part() / "depth");
     Writer writer(target.part(), source.camera());
     TumFolder written;
     std::set<std::string> said;

@@ -18,10 +18,22 @@ namespace {
     throw std::runtime_error(file.string() + ": " + reason);
 }
 
-void require_absent(const std::filesystem::path& file) {
+/// An empty folder may stand where a folder is to go: renaming replaces it.
+void require_absent(const std::filesystem::path& file, bool is_folder = false) {
     std::error_code ignored;
+    if (is_folder && std::filesystem::is_directory(file, ignored) && std::filesystem::is_empty(file, ignored))
+        return;
     if (std::filesystem::exists(std::filesystem::symlink_status(file, ignored)))
         fail(file, "is there already, and is not written over: give another --output");
+}
+
+/// The name beside, in a folder that is made if it is not there.
+std::filesystem::path part_beside(const std::filesystem::path& file) {
+    const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error) fail(folder, "cannot be made: " + error.message());
+    return folder / ("." + file.filename().string() + "." + std::to_string(::getpid()) + ".part");
 }
 
 void sync(const std::filesystem::path& file) {
@@ -37,11 +49,7 @@ void sync(const std::filesystem::path& file) {
 NewFile::NewFile(std::filesystem::path file) : file_(std::move(file)) {
     if (file_.filename().empty()) fail(file_, "is a folder; --output is the file to write");
     require_absent(file_);
-    const std::filesystem::path folder = file_.has_parent_path() ? file_.parent_path() : ".";
-    std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    if (error) fail(folder, "cannot be made: " + error.message());
-    part_ = folder / ("." + file_.filename().string() + "." + std::to_string(::getpid()) + ".part");
+    part_ = part_beside(file_);
     if (!std::ofstream(part_)) fail(file_, std::string("cannot be written: ") + std::strerror(errno));
 }
 
@@ -60,6 +68,28 @@ void NewFile::put_in_place() {
         require_absent(file_);
         std::filesystem::rename(part_, file_);
     }
+    part_.clear();
+}
+
+NewFolder::NewFolder(std::filesystem::path folder) : folder_(std::move(folder)) {
+    if (folder_.filename().empty()) folder_ = folder_.parent_path();
+    require_absent(folder_, true);
+    part_ = part_beside(folder_);
+    std::error_code error;
+    std::filesystem::create_directory(part_, error);
+    if (error) fail(folder_, "cannot be made: " + error.message());
+}
+
+NewFolder::~NewFolder() {
+    std::error_code ignored;
+    if (!part_.empty()) std::filesystem::remove_all(part_, ignored);
+}
+
+void NewFolder::put_in_place() {
+    require_absent(folder_, true);
+    std::error_code error;
+    std::filesystem::rename(part_, folder_, error);
+    if (error) fail(folder_, "cannot be put in place: " + error.message());
     part_.clear();
 }
 

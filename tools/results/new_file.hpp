@@ -29,4 +29,21 @@ class NewFile {
     std::filesystem::path file_, part_;
 };
 
+/// The same for a folder; one that is empty counts as none.
+class NewFolder {
+  public:
+    /// Throws as NewFile.
+    explicit NewFolder(std::filesystem::path folder);
+    ~NewFolder();
+    NewFolder(const NewFolder&) = delete;
+    NewFolder& operator=(const NewFolder&) = delete;
+
+    const std::filesystem::path& part() const { return part_; }
+    /// Throws std::runtime_error naming it.
+    void put_in_place();
+
+  private:
+    std::filesystem::path folder_, part_;
+};
+
 }  // namespace planemap

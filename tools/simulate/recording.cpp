@@ -47,7 +47,8 @@ class Recorder {
 
 std::int64_t record(sensor::SensorShell& sensor, messages::Bus& bus, std::int64_t max_frames,
                     const std::filesystem::path& log,
-                    const std::function<void(std::int64_t frames)>& on_frame) {
+                    const std::function<void(std::int64_t frames)>& on_frame,
+                    const std::function<void()>& at_end) {
     Recorder recorder(sensor, bus, log);
     try {
         while (!messages::stop_requested() && (max_frames == 0 || sensor.frames() < max_frames) &&
@@ -56,6 +57,9 @@ std::int64_t record(sensor::SensorShell& sensor, messages::Bus& bus, std::int64_
             recorder.throw_if_failed();
             on_frame(sensor.frames());
         }
+        if (at_end) at_end();
+        bus.drain();
+        recorder.throw_if_failed();
         recorder.close();
     } catch (...) {
         std::error_code ignored;
