@@ -41,13 +41,13 @@ OdometryShell::OdometryShell(messages::Bus& bus, std::shared_ptr<messages::Frame
         resume();
     }
     decoder_->subscribe(status_, 8, [this](auto frame) { on_frame(std::move(frame)); });
-    bus_.subscribe(messages::channels::kRegions,
-                   status_.guard([this](const messages::RawMessage& m) { on_regions(m); }), 8);
     // Only until it is known how the body lies; the newest is enough.
     bus_.subscribe(
         messages::channels::kTrajectory, [this](const messages::RawMessage& m) { on_trajectory(m); }, 1);
     bus_.subscribe(
         messages::channels::kMap, [this](const messages::RawMessage& m) { on_map(m); }, 1);
+    bus_.subscribe(messages::channels::kRegions,
+                   status_.guard([this](const messages::RawMessage& m) { on_regions(m); }), 8);
     if (!bus_.is_network()) return;
     for (const char* module : {"GRAPH", "MAP", "OCTOMAP"})
         bus_.subscribe(std::string(messages::channels::kStatusPrefix) + module,
@@ -66,6 +66,10 @@ void OdometryShell::resume() {
         }
     });
     odometry_.resume(keyframes);
+    if (!keyframes.empty()) {
+        const Keyframe& first = keyframes.front();
+        first_keyframe_ = {first.id, first.utime, first.odom_from_camera};
+    }
     if (!keyframes.empty())
         spdlog::info("odometry: knows {} keyframes of {}; lost until it finds a place that they saw",
                      keyframes.size(), journal_->file().string());
@@ -137,38 +141,6 @@ void OdometryShell::on_regions(const messages::RawMessage& message) {
         early_regions_.pop_front();
         status_.lost("regions that no frame waited for");
     }
-}
-
-void OdometryShell::on_trajectory(const messages::RawMessage& message) {
-    if (body_.is_known() || !first_keyframe_) return;
-    const KeyframeTrajectory trajectory =
-        messages::from_message(messages::decode<trajectory_t>(message.bytes));
-    for (const KeyframePose& keyframe : trajectory.keyframes) {
-        if (keyframe.id == first_keyframe_->id && keyframe.utime == first_keyframe_->utime)
-            odom_from_world_ = first_keyframe_->odom_from_camera * keyframe.world_from_camera.inverse();
-    }
-}
-
-void OdometryShell::on_map(const messages::RawMessage& message) {
-    if (body_.is_known() || !odom_from_world_) return;
-    const Eigen::Vector3f up = messages::from_message(messages::decode<plane_map_t>(message.bytes)).up;
-    if (!up.isZero()) body_.hear_up(odom_from_world_->linear() * up.cast<double>());
-}
-
-/// POSE_BODY, and once a second of the frames' time how its frames lie about ours, for those who come late.
-void OdometryShell::publish_body(const OdometryEstimate& estimate, const CameraInfo& camera) {
-    body_.see(estimate, camera.body_from_camera);
-    if (!body_.is_known()) return;
-    bus_.publish(messages::channels::kPose,
-                 messages::to_message(body_.motion(estimate), estimate.pose_utime));
-    if (body_.source() == BodyFrame::Source::kAssumed && !bus_.in_process())
-        status_.remark("body", body_.text());
-    if (frames_told_utime_ && std::abs(estimate.utime - *frames_told_utime_) < messages::kRepeat_us) return;
-    frames_told_utime_ = estimate.utime;
-    bus_.publish(messages::channels::kLocalFromOdom,
-                 messages::to_rigid_transform(body_.local_from_odom(), estimate.utime));
-    bus_.publish(messages::channels::kBodyFromCamera,
-                 messages::to_rigid_transform(body_.body_from_camera(), estimate.utime));
 }
 
 void OdometryShell::process_ready(std::size_t max_waiting) {
@@ -252,6 +224,38 @@ void OdometryShell::process(const Waiting& input) {
     status_.set_text(is_lost ? "lost"
                              : "tracked, " + std::to_string(result.estimate.inliers) + " of " +
                                    std::to_string(result.estimate.features) + " features; " + body_.text());
+}
+
+void OdometryShell::on_trajectory(const messages::RawMessage& message) {
+    if (body_.is_known() || !first_keyframe_) return;
+    const KeyframeTrajectory trajectory =
+        messages::from_message(messages::decode<trajectory_t>(message.bytes));
+    for (const KeyframePose& keyframe : trajectory.keyframes) {
+        if (keyframe.id == first_keyframe_->id && keyframe.utime == first_keyframe_->utime)
+            odom_from_world_ = first_keyframe_->odom_from_camera * keyframe.world_from_camera.inverse();
+    }
+}
+
+void OdometryShell::on_map(const messages::RawMessage& message) {
+    if (body_.is_known() || !odom_from_world_) return;
+    const Eigen::Vector3f up = messages::from_message(messages::decode<plane_map_t>(message.bytes)).up;
+    if (!up.isZero()) body_.hear_up(odom_from_world_->linear() * up.cast<double>());
+}
+
+/// POSE_BODY, and once a second of the frames' time how its frames lie about ours, for those who come late.
+void OdometryShell::publish_body(const OdometryEstimate& estimate, const CameraInfo& camera) {
+    body_.see(estimate, camera.body_from_camera);
+    if (!body_.is_known()) return;
+    bus_.publish(messages::channels::kPose,
+                 messages::to_message(body_.motion(estimate), estimate.pose_utime));
+    if (body_.source() == BodyFrame::Source::kAssumed && !bus_.in_process())
+        status_.remark("body", body_.text());
+    if (frames_told_utime_ && std::abs(estimate.utime - *frames_told_utime_) < messages::kRepeat_us) return;
+    frames_told_utime_ = estimate.utime;
+    bus_.publish(messages::channels::kLocalFromOdom,
+                 messages::to_rigid_transform(body_.local_from_odom(), estimate.utime));
+    bus_.publish(messages::channels::kBodyFromCamera,
+                 messages::to_rigid_transform(body_.body_from_camera(), estimate.utime));
 }
 
 void OdometryShell::finish() {
