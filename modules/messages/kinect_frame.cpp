@@ -74,7 +74,7 @@ DepthImage depth_of(const kinect::depth_msg_t& depth) {
 void require_depth(const kinect::depth_msg_t& depth) {
     using Depth = kinect::depth_msg_t;
     require_size(depth.width, depth.height, "depth");
-    const int format = depth.depth_data_format, compression = depth.compression;
+    const std::int8_t format = depth.depth_data_format, compression = depth.compression;
     if (format != Depth::DEPTH_11BIT && format != Depth::DEPTH_REGISTERED && format != Depth::DEPTH_MM)
         fail("depth_data_format " + std::to_string(format) + " is not 11BIT (0), REGISTERED (4) or MM (5)");
     if (compression != Depth::COMPRESSION_NONE && compression != Depth::COMPRESSION_ZLIB)

@@ -229,7 +229,7 @@ std::string BagContents::text() const {
     std::size_t count = 0;
     for (const auto& [topic, type] : bag_.types()) {
         if (++count > kMost) continue;
-        text += (text.empty() ? "" : ", ") + topic + " " + type;
+        text.append(text.empty() ? "" : ", ").append(topic).append(" ").append(type);
         for (const ImageTopic& image : images_)
             if (image.name == topic) text += " (" + image.encoding + ")";
     }
@@ -295,9 +295,12 @@ std::vector<ImageTopic> candidates(const BagContents& bag, bool depth, const std
 }
 
 Choice choose(const BagContents& bag, const std::string& file, const BagOptions& options) {
-    for (const std::string& asked : {options.depth_topic, options.color_topic})
+    const auto require_topic = [&](const std::string& asked) {
         if (!asked.empty() && find_topic(bag, asked) == nullptr)
             throw std::runtime_error(file + ": no images on " + asked + "; in it are " + bag.text());
+    };
+    require_topic(options.depth_topic);
+    require_topic(options.color_topic);
     const auto depths = candidates(bag, true, options.depth_topic);
     const auto colors = candidates(bag, false, options.color_topic);
     if (depths.empty())

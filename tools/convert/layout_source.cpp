@@ -218,10 +218,10 @@ class CameraFiles {
         if (object.contains("matrix")) {
             const auto m = numbers(object["matrix"], file, "matrix");
             if (m.size() != 16 && m.size() != 12) fail("matrix has not four rows of four numbers");
-            for (int r = 0; r < 3; ++r) {
-                for (int c = 0; c < 3; ++c) rotation(r, c) = m[static_cast<std::size_t>(4 * r + c)];
-                translation[r] = m[static_cast<std::size_t>(4 * r + 3)];
-            }
+            using Rows = Eigen::Matrix<double, 3, 4, Eigen::RowMajor>;
+            const Eigen::Map<const Rows> rows(m.data());
+            rotation = rows.leftCols<3>();
+            translation = rows.col(3);
         } else {
             if (!object.contains("rotation") || !object.contains("translation"))
                 fail("neither matrix nor rotation and translation in it");

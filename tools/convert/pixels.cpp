@@ -98,7 +98,7 @@ RgbImage from_yuv(const RawImage& image) {
     RgbImage out(image.width, image.height);
     for (int v = 0; v < image.height; ++v) {
         for (int u = 0; u < image.width; ++u) {
-            const std::uint8_t* pair = row_of(image, v) + 4 * (u / 2);
+            const std::uint8_t* pair = row_of(image, v) + 4 * static_cast<std::ptrdiff_t>(u / 2);
             out(u, v) =
                 rgb_of(pair[luma + 2 * static_cast<std::size_t>(u % 2)], pair[1 - luma], pair[3 - luma]);
         }
@@ -126,9 +126,10 @@ DepthImage depth_of(const RawImage& image, const PinholeCamera& camera) {
     for (int v = 0; v < image.height; ++v) {
         const std::uint8_t* row = row_of(image, v);
         for (int u = 0; u < image.width; ++u) {
-            depth(u, v) = is_float
-                              ? in_units(static_cast<double>(number_at<float>(row + 4 * u, image.big_endian)))
-                              : number_at<std::uint16_t>(row + 2 * u, image.big_endian);
+            const std::ptrdiff_t at = u;
+            depth(u, v) =
+                is_float ? in_units(static_cast<double>(number_at<float>(row + 4 * at, image.big_endian)))
+                         : number_at<std::uint16_t>(row + 2 * at, image.big_endian);
         }
     }
     return depth;

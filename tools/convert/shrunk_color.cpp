@@ -32,7 +32,7 @@ RgbImage shrunk(const RgbImage& image, int factor) {
         for (int u = 0; u < out.width; ++u) {
             int r = count / 2, g = count / 2, b = count / 2;
             for (int y = 0; y < factor; ++y) {
-                const Rgb* from = image.row(v * factor + y) + u * factor;
+                const Rgb* from = &image(u * factor, v * factor + y);
                 for (int x = 0; x < factor; ++x, ++from) r += from->r, g += from->g, b += from->b;
             }
             out(u, v) = {static_cast<std::uint8_t>(r / count), static_cast<std::uint8_t>(g / count),
