@@ -7,6 +7,8 @@ int main(int argc, char** argv) {
     planemap::map::MapShellOptions options;
     process.flags().add("o,output", options.output,
                         "Folder for plane_map.lcmlog; without it nothing is written");
+    process.flags().add("needs-planes", options.needs_planes,
+                        "End with code 1 if there is no plane in the map at the end");
     process.flags().add(
         "map", options.start,
         "plane_map.lcmlog to start from, in the world frame of this run: its planes keep their ids "

@@ -40,6 +40,7 @@ void make_folder(const std::filesystem::path& folder) {
 MapShell::MapShell(messages::Bus& bus, const MapShellOptions& options)
     : bus_(bus),
       output_(options.output),
+      needs_planes_(options.needs_planes),
       mapper_(options.map),
       watch_(status_, options.start.empty()
                           ? "the map is incomplete"
@@ -224,7 +225,7 @@ void MapShell::finish() {
     if (!output_.empty() && !is_ours_ && write_error_.empty())
         spdlog::info("{}: no planes came, so the earlier map stays", (output_ / kFile).string());
     if (!write_error_.empty()) throw std::runtime_error("the map could not be written: " + write_error_);
-    if (!output_.empty() && mapper_.map().planes.empty())
+    if (needs_planes_ && mapper_.map().planes.empty())
         throw std::runtime_error("nothing was mapped: no planes came");
 }
 

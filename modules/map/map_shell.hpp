@@ -28,6 +28,7 @@ struct MapShellOptions {
     /// Keyframes, poses and plane ids are kept in this file: a process that is started again goes on with
     /// them, in the same world frame; empty: in none.
     std::filesystem::path journal;
+    bool needs_planes = false;  ///< finish() throws if the map has none
 };
 
 /// PLANEMAP_KEYFRAME and PLANEMAP_TRAJECTORY to PLANEMAP_MAP. Throws std::runtime_error naming the file for a
@@ -60,6 +61,7 @@ class MapShell : public messages::Shell {
 
     messages::Bus& bus_;
     std::filesystem::path output_;
+    bool needs_planes_;
     PlaneMapper mapper_;
     messages::ModuleStatus status_{"map"};
     messages::StreamGuard keyframe_guard_{messages::channels::kKeyframe, "keyframes", status_};

@@ -158,6 +158,7 @@ std::vector<std::string> LaunchOptions::command(const std::string& module) const
     std::vector<std::string> all = {program(module).string()};
     for (std::string& flag : own_flags(module)) all.push_back(std::move(flag));
     all.push_back("--state=" + state_folder().string());
+    if (module == "map") all.emplace_back("--needs-planes");
     if (module == "graph" || module == "map" || module == "octomap")
         all.push_back("--output=" + output.string());
     return all;

@@ -184,8 +184,10 @@ void LiveRun::stop(const std::string& name, Clock::time_point until) {
         if (!ending) continue;
         if (ending->name == kLogger && name != kLogger)
             logger_ended();
-        else if (ending->code != 0 && ending->code != 128 + SIGTERM)
+        else if (ending->code != 0 && ending->code != 128 + SIGTERM) {
+            is_mapped_ = is_mapped_ && ending->name != "map";
             fail(ending->name + " " + ending->text());
+        }
     }
 }
 
@@ -206,7 +208,7 @@ void LiveRun::summarise() {
     const std::filesystem::path map = options_.output / "plane_map.lcmlog";
     std::error_code error;
     const auto written = std::filesystem::last_write_time(map, error);
-    if (!error && written >= started_) spdlog::info("the map is in {}", map.string());
+    if (is_mapped_ && !error && written >= started_) spdlog::info("the map is in {}", map.string());
     if (!recording_.empty()) spdlog::error("{}", recording_);
 }
 
@@ -216,7 +218,7 @@ void LiveRun::export_results() {
                                 map = options_.output / "plane_map.lcmlog";
     std::error_code error;
     const auto written = std::filesystem::last_write_time(map, error);
-    if (error || written < started_ || !std::filesystem::exists(program)) return;
+    if (!is_mapped_ || error || written < started_ || !std::filesystem::exists(program)) return;
     if (run_to_end({program.string(), map.string(), "--output=" + options_.output.string(), "--replace",
                     "--quiet"}) != 0)
         fail(program.string() + " failed: beside the map, no results were written");

@@ -39,6 +39,7 @@ class LiveRun {
     FolderLock lock_{".partial.lock"};
     std::string recording_;  ///< why it ended before the run; empty if it did not
     int exit_code_ = 0;
+    bool is_mapped_ = true;  ///< the map module did not fail
     Clock::time_point began_ = Clock::now();
     std::filesystem::file_time_type started_ = std::filesystem::file_time_type::clock::now();
 };
