@@ -46,8 +46,7 @@ bool is_camera(const std::string& input) {
 std::unique_ptr<FrameSource> open_camera(const std::string& input, const CameraRequest& request) {
     request.options.validate();
     const std::optional<std::string> openni2 = wanted_of(input, "openni2");
-    if (!request.record.empty() && !openni2)
-        throw std::invalid_argument("--record writes what an OpenNI2 camera sends; INPUT is " + input);
+    if (!request.record.empty() && !openni2) refuse_recording(input);
     if (openni2) return open_openni2(*openni2, request);
     if (const std::optional<std::string> freenect = wanted_of(input, "freenect")) {
         return std::make_unique<LiveSource>([=](const std::string&) -> std::unique_ptr<LiveCamera> {
@@ -55,6 +54,10 @@ std::unique_ptr<FrameSource> open_camera(const std::string& input, const CameraR
         });
     }
     return std::make_unique<OniSource>(input, request);
+}
+
+void refuse_recording(const std::string& input) {
+    throw std::invalid_argument("--record writes what an OpenNI2 camera sends; INPUT is " + input);
 }
 
 std::string list_cameras() {

@@ -17,6 +17,9 @@ bool is_camera(const std::string& input);
 /// camera or file, or it does not work; std::invalid_argument for bad options.
 std::unique_ptr<FrameSource> open_camera(const std::string& input, const CameraRequest& request);
 
+/// Throws std::invalid_argument: --record is for a live OpenNI2 camera, and `input` is none.
+[[noreturn]] void refuse_recording(const std::string& input);
+
 /// All cameras there are, with their modes, as lines for people: those that OpenNI2 and libfreenect find, and
 /// those that are plugged in and cannot be opened, with the reason. Says so if there is none.
 std::string list_cameras();
