@@ -161,8 +161,7 @@ std::unique_ptr<FrameSource> open_source(const std::string& input, const SourceO
         throw std::invalid_argument(input + ": has no channels; --channel is for LCM logs");
     if (opener.kind != InputKind::kCamera) {
         if (options.duration_s > 0) refuse_duration(input);
-        if (!options.device.record.empty())
-            throw std::invalid_argument("--record writes what an OpenNI2 camera sends; INPUT is " + input);
+        if (!options.device.record.empty()) camera::refuse_recording(input);
         if (options.device.repeat)
             throw std::invalid_argument("--repeat is for .oni files; INPUT is " + input);
     }

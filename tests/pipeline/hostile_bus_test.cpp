@@ -70,7 +70,7 @@ const Stream& walk() {
         PipelineOptions options;
         options.with_octomap = false;
         Pipeline pipeline(bus, options);
-        const auto input = open_input("sim:office?frames=40&width=320&height=240", bus, std::nullopt);
+        const auto input = open_input("sim:office?frames=40&width=320&height=240", bus);
         while (input->feed()) pipeline.settle();
         pipeline.settle();
         return stream;

@@ -30,7 +30,7 @@ TEST(OpenSource, RefusesWhatItDoesNotKnow) {
     of_a_camera.duration_s = 3;
     EXPECT_THROW(open_source("sim:office", of_a_camera), std::invalid_argument);
     of_a_camera = {};
-    of_a_camera.camera.record = "x.oni";
+    of_a_camera.device.record = "x.oni";
     EXPECT_THROW(open_source("sim:office", of_a_camera), std::invalid_argument);
     EXPECT_THROW(open_source(std::string(10000, 'x')), std::exception);
 }
