@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "messages/decode.hpp"
+#include "messages/told_status.hpp"
 
 namespace planemap::messages {
 namespace {
@@ -164,6 +165,19 @@ TEST_F(Status, OnceASecond) {
     EXPECT_FALSE(status_.publish_if_due(bus_, 1000000));
     EXPECT_FALSE(status_.publish_if_due(bus_, 1900000));
     EXPECT_TRUE(status_.publish_if_due(bus_, 2000000));
+}
+
+TEST(ModuleStatus, SaysHowOldOutputsAreWhenTheyLeaveIfStampsAreOfNow) {
+    ModuleStatus status("odometry");
+    status.published(1000000, 500000000);  // a recording's stamp
+    status.published(2000000, 1000000);    // of the future
+    EXPECT_EQ(test::told(status).age_median_ms, -1);
+    for (int i = 0; i < 10; ++i) status.published(1000000, 1012000);
+    status.published(1000000, 1050000);
+    EXPECT_NEAR(test::told(status).age_median_ms, 12, 0.2);
+    EXPECT_NEAR(test::told(status).age_p95_ms, 50, 1);
+    EXPECT_EQ(test::told(status).published, 13);
+    EXPECT_NE(status.line().find("12 ms (p95 50) after the shutter"), std::string::npos) << status.line();
 }
 
 }  // namespace

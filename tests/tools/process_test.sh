@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # process_test.sh BIN: launch, record, replay. The modules as separate processes on udpm, in a network of their own:
 #   1. a simulated camera at 30 Hz goes through all modules; lcm-logger must have every frame, and a map must come out;
-#   2. that log goes into the modules without a sensor, and a map must come out again.
+#   2. that log goes into the modules without a sensor, and a map must come out again;
+#   3. who joins in the middle of a slow recording has camera, trajectory and map within two seconds of the wall clock.
 # Exits with 77, ctest's code for a skipped test, where multicast cannot be had.
 set -euo pipefail
 
@@ -33,4 +34,15 @@ replay "$work/live.lcmlog" "$work/replay.lcmlog" "$work/replay" || fail "the rep
 replayed="$(events "$work/replay.lcmlog" OPENNI_FRAME)"
 [[ "$replayed" -eq "$frames" ]] || fail "$replayed of $frames frames arrived from the replay"
 expect_map "$work/replay.lcmlog" "$work/replay"
+echo "== late"
+launch 'sim:office?frames=60&width=320&height=240' --rate 5 --no-octomap --output "$work/late" 2>"$work/late.stderr" &
+launch_pid=$!
+sleep 6
+timeout -s INT 2 lcm-logger --quiet --lcm-url="$url" "$work/late.lcmlog" || true
+kill -TERM "$launch_pid"
+wait "$launch_pid" || fail "tools/launch ended with code $?"
+launch_pid=
+for channel in PLANEMAP_CAMERA_INFO PLANEMAP_TRAJECTORY PLANEMAP_MAP; do
+    [[ "$(events "$work/late.lcmlog" "$channel")" -gt 0 ]] || fail "who comes late has no $channel within two seconds"
+done
 echo "process_test: $frames frames recorded and replayed, a map each time"
