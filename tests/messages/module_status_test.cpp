@@ -173,10 +173,10 @@ TEST(ModuleStatus, SaysHowOldOutputsAreWhenTheyLeaveIfStampsAreOfNow) {
     status.published(2000000, 1000000);    // of the future
     EXPECT_EQ(test::told(status).age_median_ms, -1);
     for (int i = 0; i < 10; ++i) status.published(1000000, 1012000);
-    status.published(1000000, 1050000);
+    for (int i = 0; i < 2; ++i) status.published(1000000, 1050000);
     EXPECT_NEAR(test::told(status).age_median_ms, 12, 0.2);
     EXPECT_NEAR(test::told(status).age_p95_ms, 50, 1);
-    EXPECT_EQ(test::told(status).published, 13);
+    EXPECT_EQ(test::told(status).published, 14);
     EXPECT_NE(status.line().find("12 ms (p95 50) after the shutter"), std::string::npos) << status.line();
 }
 
