@@ -13,8 +13,10 @@ seconds="${3:-${PLANEMAP_KILL_SECONDS:-12}}"
 seed="${4:-7}"
 url="udpm://239.255.76.67:$((20000 + $$ % 20000))?ttl=0&recv_buf_size=4194304"
 rate=15
-# The input goes on for as long as the last round of kills may take.
-input="sim:office?frames=$((rate * (seconds + 14)))&width=320&height=240&speed=0.15&turn=8"
+# The input goes on for as long as the last round of kills may take. The longer the kills, the slower the camera walks the
+# same way: an odometry that dies again and again is started ever later, and is to find a place that it knows.
+slower="$(awk -v s="$seconds" 'BEGIN { f = 12 / s; printf "speed=%.4f&turn=%.4f", 0.15 * f, 8 * f }')"
+input="sim:office?frames=$((rate * (seconds + 14)))&width=320&height=240&$slower"
 smallest_iou=0.5
 
 source "$(dirname "${BASH_SOURCE[0]}")/own_network.sh"
