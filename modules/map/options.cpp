@@ -16,7 +16,8 @@ OptionList options_of(MapOptions& options) {
         "pose_sigma_m", options.pose_sigma_m, {1e-6, 10},
         "Standard deviation of keyframe poses; a view whose depth noise is smaller gains no weight by it");
     list.add("agreement_m", options.agreement_m, {1e-6, 100},
-             "A view that lies off its plane by much more than this (and the sensor's noise) loses weight");
+             "A view that lies off its plane by much more than this (and the sensor's noise) loses weight",
+             kExpert);
     list.add("outline_cell_m", options.outline_cell_m, {0.005, 1},
              "Cell of the raster on which a plane's shape is collected");
     list.add("outline_tolerance_m", options.outline_tolerance_m, {0, 1},

@@ -154,9 +154,9 @@ int Process::run(int argc, char** argv, const std::function<std::unique_ptr<Shel
         start_logging(program_, verbose_);
         catch_stop_signals();
         Bus bus(lcm_url_, channel_prefix_);
-        require_shared(bus);
         if (!state_.empty()) bus.go_on_as(session_with_state(state_, module_));
         const std::unique_ptr<Shell> shell = make_shell(bus);
+        require_shared(bus);
         if (bus.connected())
             spdlog::info("on {}{}", bus.url(),
                          channel_prefix_.empty() ? "" : ", channels " + channel_prefix_ + "*");

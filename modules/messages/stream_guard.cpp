@@ -32,8 +32,9 @@ bool StreamGuard::admits(std::int64_t session, std::int32_t seq, std::optional<s
     const Verdict verdict = guard_.judge(message);
     if (!guard_.news().empty()) spdlog::warn("{}", guard_.news());
     if (verdict == Verdict::kRepeated) {
-        // A sender with a session sends on purpose what another module missed.
+        // A sender with a session sends on purpose what another module missed: no reason to warn.
         if (main_stream_ && session == 0) status_.lost(things_ + " that came twice");
+        if (main_stream_ && session != 0) status_.count_loss(things_ + " that came twice");
         return false;
     }
     if (verdict == Verdict::kLate && !main_stream_) {

@@ -25,8 +25,9 @@ class StreamGuard {
           main_stream_(main_stream) {}
 
     /// Whether to use a message; `session` is the sender's id, or 0 if it does not say. One that repeats the
-    /// last, byte for byte, is not used; beside the main stream it is for those who came late, in it (nobody
-    /// sends those again but a replay of an old log) it is counted. One that comes late is admitted to the
+    /// last, byte for byte, is not used; beside the main stream it is for those who came late, in it
+    /// it is counted, with a warning if the sender has no session: then only a replay of an old log does
+    /// that. One that comes late is admitted to the
     /// main stream: the module knows what it can do with it; beside that, what came since has taken its
     /// place.
     bool admits(std::int64_t session, std::int32_t seq, std::optional<std::int64_t> utime,

@@ -20,11 +20,12 @@ OptionList options_of(OdometryOptions& options) {
     list.add("min_inliers", options.min_inliers, {6, 1000},
              "With fewer features that agree, a pose does not rest on features", kExpert);
     list.add("color_jitter_s", options.color_jitter_s, {1e-5, 1},
-             "Standard deviation of when the colour image was taken, against its stamp");
+             "Standard deviation of when the colour image was taken, against its stamp", kExpert);
     list.add("acceleration", options.acceleration, {0.01, 1000, "m/s^2"},
-             "Of the camera: bounds how far a pose may be from where the motion so far leads");
+             "Of the camera: bounds how far a pose may be from where the motion so far leads", kExpert);
     list.add("angular_acceleration", options.angular_acceleration, {0.01, 10000, "rad/s^2"},
-             "Of the camera: bounds how far a pose may be turned from where the motion so far leads");
+             "Of the camera: bounds how far a pose may be turned from where the motion so far leads",
+             kExpert);
     list.add("min_tracked_share", options.min_tracked_share, kShare,
              "A new keyframe begins when a smaller share of the keyframe's points is tracked");
     list.add("max_translation_m", options.max_translation_m, {0.01, 10},

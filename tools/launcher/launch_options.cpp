@@ -144,7 +144,7 @@ std::vector<std::string> LaunchOptions::own_flags(const std::string& module) con
             all.push_back("--" + name + (value.empty() ? "" : "=" + value));
     }
     const bool takes_frames = module == "segmentation" || module == "odometry" || module == "octomap";
-    if (!camera.empty() && (module == "sensor" || (no_sensor && takes_frames)))
+    if (!camera.empty() && (no_sensor ? takes_frames : module == "sensor"))
         all.push_back("--camera=" + camera.string());
     all.push_back("--lcm-url=" + lcm_url);
     if (!channel_prefix.empty()) all.push_back("--channel-prefix=" + channel_prefix);
