@@ -63,7 +63,7 @@ void GraphShell::write_trajectory() {
 void GraphShell::on_keyframe(const messages::RawMessage& message) {
     const keyframe_t received = messages::decode<keyframe_t>(message.bytes);
     const Keyframe keyframe = messages::from_message(received);
-    if (came_again(received)) return;
+    if (came_again(received)) return status_.count_loss("keyframes that came twice");
     if (!keyframe_guard_.admits(received.session, received.seq, received.utime, message.bytes)) return;
     if (odometry_started_again_ || !graph_.expects(keyframe.id)) {
         refuse(keyframe.id);

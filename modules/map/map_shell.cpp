@@ -64,7 +64,8 @@ void MapShell::on_keyframe(const messages::RawMessage& message) {
     const keyframe_t received = messages::decode<keyframe_t>(message.bytes);
     const Keyframe keyframe = messages::from_message(received);
     // Odometry sends the last ones again when a module was started again.
-    if (received.session != 0 && received.session == keyframes_of_ && watch_.has(keyframe.id)) return;
+    if (received.session != 0 && received.session == keyframes_of_ && watch_.has(keyframe.id))
+        return status_.count_loss("keyframes that came twice");
     if (!keyframe_guard_.admits(received.session, received.seq, received.utime, message.bytes)) return;
     keyframes_of_ = received.session;
     watch_.came(keyframe.id, keyframe.previous_id, keyframe.utime);

@@ -77,7 +77,8 @@ void OctomapShell::drop(const char* reason, std::int64_t count) {
 void OctomapShell::on_keyframe(const messages::RawMessage& message) {
     const keyframe_t received = messages::decode<keyframe_t>(message.bytes);
     // Odometry sends the last ones again when a module was started again.
-    if (received.session != 0 && received.session == keyframes_of_ && watch_.has(received.id)) return;
+    if (received.session != 0 && received.session == keyframes_of_ && watch_.has(received.id))
+        return status_.count_loss("keyframes that came twice");
     if (!keyframe_guard_.admits(received.session, received.seq, received.utime, message.bytes)) return;
     keyframes_of_ = received.session;
     watch_.came(received.id, received.previous_id, received.utime);
