@@ -14,6 +14,8 @@ namespace planemap::camera {
 
 namespace {
 
+constexpr std::ptrdiff_t kPixels = std::ptrdiff_t{640} * 480;  // of FREENECT_RESOLUTION_MEDIUM
+
 using namespace std::chrono_literals;
 
 constexpr auto kFirstFrame = 5000ms;
@@ -100,12 +102,12 @@ void FreenectCamera::start(const CameraRequest& request) {
     freenect_set_depth_callback(handle, [](freenect_device* device, void* data, std::uint32_t ticks) {
         auto& self = *static_cast<FreenectCamera*>(freenect_get_user(device));
         const auto* bytes = static_cast<const std::uint8_t*>(data);
-        self.frames_.add_depth({self.stamp_us(ticks), wall_us(), Bytes(bytes, bytes + 640 * 480 * 2)});
+        self.frames_.add_depth({self.stamp_us(ticks), wall_us(), Bytes(bytes, bytes + kPixels * 2)});
     });
     freenect_set_video_callback(handle, [](freenect_device* device, void* data, std::uint32_t ticks) {
         auto& self = *static_cast<FreenectCamera*>(freenect_get_user(device));
         const auto* bytes = static_cast<const std::uint8_t*>(data);
-        self.frames_.add_color({self.stamp_us(ticks), wall_us(), Bytes(bytes, bytes + 640 * 480 * 3)});
+        self.frames_.add_color({self.stamp_us(ticks), wall_us(), Bytes(bytes, bytes + kPixels * 3)});
     });
     freenect_set_video_mode(handle, freenect_find_video_mode(FREENECT_RESOLUTION_MEDIUM, FREENECT_VIDEO_RGB));
     freenect_set_depth_mode(handle, freenect_find_depth_mode(FREENECT_RESOLUTION_MEDIUM,

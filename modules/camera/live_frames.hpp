@@ -106,16 +106,17 @@ class LiveFrames {
         }
         // Colour first: depth that arrived with its colour need not wait.
         for (Frame& frame : color) {
-            if (is_new(frame, last_color_us_, lost)) pairing_.add_color(frame.stamp_us, std::move(frame));
+            const std::int64_t stamp_us = frame.stamp_us;
+            if (is_new(frame, last_color_us_, lost)) pairing_.add_color(stamp_us, std::move(frame));
         }
         for (Frame& frame : depth) {
-            const std::int64_t before_us = last_depth_us_;
+            const std::int64_t before_us = last_depth_us_, stamp_us = frame.stamp_us;
             if (!is_new(frame, last_depth_us_, lost)) continue;
-            const std::int64_t steps = (frame.stamp_us - before_us + period_us_ / 2) / period_us_;
-            if (before_us >= 0 && frame.stamp_us > before_us)
+            const std::int64_t steps = (stamp_us - before_us + period_us_ / 2) / period_us_;
+            if (before_us >= 0 && stamp_us > before_us)
                 count(lost, "frames that the camera did not send", steps - 1);
             last_arrival_ = Clock::now();
-            pairing_.add_depth(frame.stamp_us, std::move(frame));
+            pairing_.add_depth(stamp_us, std::move(frame));
         }
         return true;
     }

@@ -93,9 +93,9 @@ class OniSource::Player {
         left_[i] = std::max(left_[i] - 1, 0);
         const auto stamp_us = static_cast<std::int64_t>(frame.getTimestamp());
         if (i == 0)
-            pairing_.add_depth(stamp_us, std::move(frame));
+            pairing_.add_depth(stamp_us, frame);
         else
-            pairing_.add_color(stamp_us, std::move(frame));
+            pairing_.add_color(stamp_us, frame);
     }
 
     OpenNi2Library library_;  // ends after all that is of it

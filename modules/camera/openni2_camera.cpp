@@ -29,6 +29,7 @@ std::vector<openni::DeviceInfo> devices() {
     openni::Array<openni::DeviceInfo> found;
     openni::OpenNI::enumerateDevices(&found);
     std::vector<openni::DeviceInfo> all;
+    all.reserve(static_cast<std::size_t>(found.getSize()));
     for (int i = 0; i < found.getSize(); ++i) all.push_back(found[i]);
     return all;
 }

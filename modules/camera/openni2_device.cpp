@@ -122,7 +122,7 @@ RgbImage color_image(const openni::VideoFrameRef& frame) {
         const std::uint8_t* const row = static_cast<const std::uint8_t*>(frame.getData()) +
                                         static_cast<std::ptrdiff_t>(v) * frame.getStrideInBytes();
         Rgb* const out = image.row(v);
-        for (int u = 0; u < image.width; ++u) {
+        for (std::ptrdiff_t u = 0; u < image.width; ++u) {
             if (format == openni::PIXEL_FORMAT_RGB888) {
                 out[u] = {row[3 * u], row[3 * u + 1], row[3 * u + 2]};
             } else if (format == openni::PIXEL_FORMAT_GRAY8) {

@@ -14,8 +14,6 @@
 
 #include "sensor/source.hpp"
 
-extern char** environ;
-
 namespace planemap::launcher {
 
 namespace {
@@ -57,6 +55,7 @@ void check_folder(const std::filesystem::path& folder) {
 
 int run_to_end(const std::vector<std::string>& command) {
     std::vector<char*> arguments;
+    arguments.reserve(command.size() + 1);
     for (const std::string& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
     arguments.push_back(nullptr);
     posix_spawn_file_actions_t files;
