@@ -208,7 +208,7 @@ std::vector<Earlier> earlier(const map_size_t*) {
 }
 std::vector<Earlier> earlier(const module_status_t*) {
     std::vector<std::uint8_t> unmeasured = zeros(8 + 4 + 4);
-    for (const std::size_t age : {8, 12}) {  // -1.0f
+    for (const std::size_t age : {std::size_t{8}, std::size_t{12}}) {  // -1.0f
         unmeasured[age] = 0xbf;
         unmeasured[age + 1] = 0x80;
     }

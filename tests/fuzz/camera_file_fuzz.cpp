@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <optional>
 
+#include "core/camera_file.hpp"
 #include "fuzz/fuzz.hpp"
 #include "messages/convert.hpp"
-#include "sensor/camera_file.hpp"
 
 namespace planemap::fuzz {
 
@@ -12,7 +12,7 @@ void fuzz(Bytes bytes) {
     std::optional<CameraInfo> camera;
     try {
         std::vector<std::string> notes;
-        camera = sensor::read_camera_file(file.path(), &notes);
+        camera = read_camera_file(file.path(), &notes);
     } catch (const std::runtime_error&) {
     } catch (const std::invalid_argument&) {
     }
