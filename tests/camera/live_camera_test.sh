@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# live_camera_test.sh BIN WRITE_FAKENECT: cameras without hardware.
+# live_camera_test.sh BIN: cameras without hardware.
 #   1. planemap-sensor on the virtual camera: frames, and each of its faults as it is told;
 #   2. an .oni recorded from it, mapped twice with the same bytes; a truncated one;
 #   3. planemap-run on the live camera; 4. a Kinect v1 by fakenect.
 set -euo pipefail
 
-bin="$1" write_fakenect="$2"
+bin="$1"
 source "$(dirname "${BASH_SOURCE[0]}")/../tools/own_network.sh"
 work="$(mktemp -d)"
 trap 'rm -rf "$work"' EXIT
@@ -100,7 +100,7 @@ if [[ -z "$fakenect" ]]; then
     exit 0
 fi
 echo "== a Kinect v1"
-"$write_fakenect" 'sim:office' "$work/kinect" 20 || fail "no recording for fakenect"
+"$bin/planemap-convert" 'sim:office?frames=20' --to fakenect --quiet --output "$work/kinect" >/dev/null || fail "no recording for fakenect"
 LD_PRELOAD="$fakenect" FAKENECT_PATH="$work/kinect" timeout 60 "$bin/planemap-sensor" freenect --duration 2 \
     --lcm-url "file://$work/kinect.lcmlog?mode=w" >"$work/kinect.lcmlog.txt" 2>&1 ||
     fail "freenect: code $?: $(cat "$work/kinect.lcmlog.txt")"

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "camera/fakenect.hpp"
 #include "convert/bag_source.hpp"
 #include "convert/layout_source.hpp"
 #include "convert/shrunk_color.hpp"
@@ -17,6 +18,7 @@
 #include "core/standard_output.hpp"
 #include "core/validation.hpp"
 #include "messages/decode.hpp"
+#include "messages/image_codec.hpp"
 #include "messages/log.hpp"
 #include "messages/log_contents.hpp"
 #include "messages/process.hpp"
@@ -166,6 +168,18 @@ TumFolder write_folder(FrameSource& source, const Trajectory& truth, const fs::p
     return written;
 }
 
+/// As a Kinect v1 would have sent it.
+TumFolder write_kinect(FrameSource& source, const fs::path& output) {
+    const std::size_t frames =
+        camera::write_fakenect(source, output, 0, [](const SensorFrame& frame, const PinholeCamera& camera) {
+            return frame.color_jpeg.empty()
+                       ? frame.color
+                       : messages::decode_jpeg_colors(frame.color_jpeg, camera.width, camera.height);
+        });
+    for (const std::string& complaint : source.complaints()) spdlog::warn("{}", complaint);
+    return {static_cast<std::int64_t>(frames), 0, 0, 0};
+}
+
 }  // namespace
 
 void ConvertOptions::validate() const {
@@ -227,6 +241,10 @@ void convert(const std::string& input, const fs::path& output, const ConvertOpti
     const bool to_log =
         options.to == "log" || (options.to == "auto" && (end == ".lcmlog" || end == ".lcm" || end == ".log"));
     std::unique_ptr<FrameSource> source = open_input(input, options);
+    if (options.to == "fakenect") {
+        print(output.string() + ": " + counts_text(write_kinect(*source, output)) + "\n");
+        return;
+    }
     const Trajectory truth = truth_of(input, *source);
     const TumFolder written = to_log ? write_log(std::move(source), truth, output, options)
                                      : write_folder(*source, truth, output, options);

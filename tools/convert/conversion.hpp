@@ -19,7 +19,7 @@ struct ConvertOptions {
     double max_color_gap_s = 0.02;         ///< between the stamps of depth and its colour
     double rate_hz = 30;                   ///< of images that are only numbered
     double depth_units_per_metre = 1000;   ///< of a camera's folder that does not say
-    std::string to = "auto";               ///< "log", "tum", or "auto": by the name of the output
+    std::string to = "auto";               ///< "log", "tum", "fakenect", or "auto": by the name of the output
     sensor::SensorShellOptions encoding;   ///< of what goes to a log
     bool quiet = false;
 
@@ -39,7 +39,8 @@ std::unique_ptr<FrameSource> open_input(const std::string& input, const ConvertO
 /// a log, the simulator's. Empty where there is none.
 Trajectory truth_of(const std::string& input, const FrameSource& source);
 
-/// Writes the input to `output`, a log or a folder in the TUM layout, which must not be there yet, and prints
+/// Writes the input to `output`, a log, a folder in the TUM layout, or one that fakenect
+/// plays in place of a Kinect v1, which must not be there yet, and prints
 /// what came over and what did not. Throws std::runtime_error naming file and reason; the output is then not
 /// there.
 void convert(const std::string& input, const std::filesystem::path& output, const ConvertOptions& options);

@@ -22,7 +22,10 @@ int main(int argc, char** argv) {
     flags.add_positional("input", input, "See above");
     flags.add("o,output", output, "NAME.lcmlog, or the TUM folder to make; must not be there yet");
     flags.required();
-    flags.add_choice("to", options.to, {"auto", "log", "tum"}, "What to write; auto: by the output's name");
+    flags.add_choice(
+        "to", options.to, {"auto", "log", "tum", "fakenect"},
+        "What to write; auto: a log or a TUM folder, by the output's name; fakenect: what libfreenect's "
+        "fakenect plays in place of a Kinect v1");
     camera.add_to(flags, "camera.json, instead of what INPUT says of its camera");
     flags.add("channel", options.channel,
               "Of a log: the channel of the frames; default: the first that has depth");
