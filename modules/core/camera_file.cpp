@@ -7,12 +7,12 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/json_file.hpp"
 #include "core/nearest_name.hpp"
 #include "core/number_text.hpp"
 #include "core/sensor_preset.hpp"
 #include "core/text_file.hpp"
 #include "core/validation.hpp"
-#include "core/json_file.hpp"
 
 namespace planemap {
 
@@ -289,12 +289,14 @@ std::string camera_file_text(const CameraInfo& camera) {
     nlohmann::ordered_json file;
     if (!camera.serial.empty()) file["serial"] = camera.serial;
     file["depth_camera"] = pinhole_json(camera.depth);
-    if (!camera.registered || !(camera.color == camera.depth)) file["color_camera"] = pinhole_json(camera.color);
+    if (!camera.registered || !(camera.color == camera.depth))
+        file["color_camera"] = pinhole_json(camera.color);
     file["depth_units_per_metre"] = camera.depth_units_per_metre;
     file["registered"] = camera.registered;
     if (!camera.registered) {
         const Eigen::AngleAxisd rotation(camera.color_from_depth.linear());
-        const Eigen::Vector3d r = rotation.angle() * rotation.axis(), t = camera.color_from_depth.translation();
+        const Eigen::Vector3d r = rotation.angle() * rotation.axis(),
+                              t = camera.color_from_depth.translation();
         file["color_from_depth"] = {{"rotation_vector_rad", {r.x(), r.y(), r.z()}},
                                     {"translation_m", {t.x(), t.y(), t.z()}}};
     }

@@ -88,7 +88,6 @@ class ModuleStatus {
     /// if it is not so.
     std::string failure() const;
 
-
     /// Publishes at once, as the first message.
     void announce(Bus& bus, std::int64_t now_us);
     /// Publishes when a second has passed since the last time; `stopped` publishes at once, as the last

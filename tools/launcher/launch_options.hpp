@@ -15,7 +15,7 @@ inline constexpr const char* kModules[] = {"sensor", "segmentation", "odometry",
 
 /// What planemap-launch is told.
 struct LaunchOptions {
-    std::string input;        ///< empty: not given, sim:office
+    std::string input;  ///< empty: not given, sim:office
     /// For the sensor, as they were given; empty: not given.
     std::string rate, speed, channel, record, duration;
     bool repeat = false;           ///< the sensor's, too

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "core/stamp.hpp"
-#include "messages/log.hpp"
 #include "messages/decode.hpp"
+#include "messages/log.hpp"
 #include "messages/log_contents.hpp"
 
 namespace planemap {
