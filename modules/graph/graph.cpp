@@ -38,6 +38,7 @@ class PoseGraph::Impl {
     void optimise();
     std::unique_ptr<OptimisationTask> prepare();
     void apply(const OptimisationTask& task);
+    bool adopt(const Surfaces& surfaces);
     void thin_out();
     void publish() { trajectory_.update(keyframes_, history_.count()); }
 
@@ -218,6 +219,17 @@ void PoseGraph::Impl::optimise() {
     apply(*task);
 }
 
+bool PoseGraph::Impl::adopt(const Surfaces& surfaces) {
+    std::vector<std::vector<int>> of_nodes(keyframes_.poses().size());
+    for (const KeyframeSurfaces& keyframe : surfaces.keyframes) {
+        const int node = keyframes_.node_of(keyframe.id);
+        if (node >= 0) of_nodes[at(node)] = keyframe.planes;
+    }
+    const bool is_news = landmarks_.adopt(of_nodes, keyframes_.poses());
+    if (is_news) schedule_.landmarks_changed(landmarks_.worst_error(keyframes_.poses()));
+    return is_news;
+}
+
 /// Where keyframes of one place pile up, the older ones go. Not while an optimisation is at work, which knows
 /// nodes by their numbers.
 void PoseGraph::Impl::thin_out() {
@@ -294,6 +306,10 @@ const KeyframeTrajectory& PoseGraph::apply(const GraphOptimisation& optimisation
     impl_->thin_out();
     impl_->publish();
     return impl_->trajectory();
+}
+
+bool PoseGraph::adopt(const Surfaces& surfaces) {
+    return impl_->adopt(surfaces);
 }
 
 const KeyframeTrajectory& PoseGraph::finish() {

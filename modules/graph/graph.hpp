@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/keyframe.hpp"
+#include "core/surfaces.hpp"
 #include "graph/loop_closure.hpp"
 #include "graph/options.hpp"
 
@@ -70,6 +71,11 @@ class PoseGraph {
     bool due() const;
     GraphOptimisation prepare();
     const KeyframeTrajectory& apply(const GraphOptimisation& optimisation);
+
+    /// Takes from the map which regions show one surface: each is one landmark from now on, and what they
+    /// say against the poses counts when the next keyframe comes, or at the end. Returns whether that was
+    /// news. Not between prepare() and apply().
+    bool adopt(const Surfaces& surfaces);
 
     /// Optimises once more, with all that is known; for the end of a run.
     const KeyframeTrajectory& finish();

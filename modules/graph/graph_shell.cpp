@@ -31,6 +31,8 @@ GraphShell::GraphShell(messages::Bus& bus, const GraphOptions& options, Optimisi
     // Keyframes are few and each counts: a long queue.
     bus_.subscribe(messages::channels::kKeyframe,
                    status_.guard([this](const messages::RawMessage& m) { on_keyframe(m); }), 256);
+    bus_.subscribe(messages::channels::kSurfaces,
+                   status_.guard([this](const messages::RawMessage& m) { on_surfaces(m); }), 4);
     if (!output_.empty())
         bus_.subscribe(
             messages::channels::kOdometry, [this](const messages::RawMessage& m) { on_odometry(m); }, 256);
@@ -75,6 +77,22 @@ void GraphShell::on_keyframe(const messages::RawMessage& message) {
     if (journal_) journal_->add(message.channel, message.bytes);
     publish();
     start_if_due();
+}
+
+void GraphShell::on_surfaces(const messages::RawMessage& message) {
+    const surfaces_t received = messages::decode<surfaces_t>(message.bytes);
+    Surfaces surfaces = messages::from_message(received);
+    if (!surfaces_guard_.admits(received.session, received.seq, std::nullopt, message.bytes)) return;
+    if (running_) {
+        waiting_surfaces_ = std::move(surfaces);  // the newest says all
+    } else {
+        adopt(surfaces);
+    }
+}
+
+void GraphShell::adopt(const Surfaces& surfaces) {
+    const messages::ModuleStatus::Work work(status_);
+    has_new_surfaces_ = graph_.adopt(surfaces) || has_new_surfaces_;
 }
 
 void GraphShell::add(const Keyframe& keyframe) {
@@ -183,24 +201,28 @@ int GraphShell::poll() {
     }
     if (!running_) return kIdleMs;
     if (done_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return kRunningMs;
-    done_.get();
-    graph_.apply(*running_);
-    running_.reset();
+    apply_finished();
     publish();
     start_if_due();
     return kIdleMs;
 }
 
+/// What the background found, and then what had to wait for it.
+void GraphShell::apply_finished() {
+    done_.get();
+    graph_.apply(*running_);
+    running_.reset();
+    if (waiting_surfaces_) adopt(*waiting_surfaces_);
+    waiting_surfaces_.reset();
+}
+
 void GraphShell::finish() {
-    if (running_) {
-        done_.get();
-        graph_.apply(*running_);
-        running_.reset();
-    }
+    if (running_) apply_finished();
     if (graph_.trajectory().keyframes.empty()) return;
     {
         const messages::ModuleStatus::Work work(status_);
         graph_.finish();
+        has_new_surfaces_ = false;
     }
     publish();
     if (!output_.empty()) write_trajectory();

@@ -45,6 +45,8 @@ class GraphShell : public messages::Shell {
     /// Waits for the background, optimises once more and publishes the result.
     void finish() override;
     const PoseGraph& graph() const { return graph_; }
+    /// Whether the map's surfaces changed what the graph holds for landmarks since it was last optimised.
+    bool has_new_surfaces() const { return has_new_surfaces_; }
 
   private:
     static constexpr std::size_t kMostFrames = 1000000;  ///< nine hours; then the oldest go
@@ -55,6 +57,9 @@ class GraphShell : public messages::Shell {
     void took(const keyframe_t& received);
     void resume();
     void compact();
+    void on_surfaces(const messages::RawMessage& message);
+    void adopt(const Surfaces& surfaces);
+    void apply_finished();
     void on_odometry(const messages::RawMessage& message);
     void write_trajectory();
     void refuse(int id);
@@ -70,6 +75,10 @@ class GraphShell : public messages::Shell {
     std::future<void> done_;
     messages::ModuleStatus status_{"graph"};
     messages::StreamGuard keyframe_guard_{messages::channels::kKeyframe, "keyframes", status_};
+    messages::StreamGuard surfaces_guard_{messages::channels::kSurfaces, "surfaces of the map", status_,
+                                          false};
+    std::optional<Surfaces> waiting_surfaces_;  ///< that came while the background was at work
+    bool has_new_surfaces_ = false;
     GraphCounts told_;  ///< to the status
     std::int32_t seq_ = 0;
     std::int64_t published_us_ = 0;    ///< wall clock of the last trajectory; 0: none yet

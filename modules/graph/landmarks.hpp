@@ -19,12 +19,14 @@ struct Landmark {
     Plane plane;
     Box box;  ///< of all that was seen of it
     int sightings = 0;
+    bool is_surface = false;  ///< the map says who sees it, see Landmarks::adopt()
 };
 
 /// A keyframe saw a landmark: four points that carry the region's second moments must lie on it.
 struct Sighting {
     int node = -1;
-    int landmark = -1;
+    int landmark = -1;                             ///< -1: it may be several
+    int region = -1;                               ///< of the node's keyframe; -1: of one that went
     std::array<Eigen::Vector3d, 4> points_camera;  ///< centre +- one standard deviation along both axes
     double sqrt_weight = 0;                        ///< of each point's distance, 1/metres
 };
@@ -56,6 +58,14 @@ class Landmarks {
     /// the node that founded them: world_moves is how the world moved about each node.
     void follow(const std::vector<Landmark>& optimised, const std::vector<Pose>& world_moves);
 
+    /// Takes from the map which surface each region of each node shows (-1: none): one landmark each. What it
+    /// does not name stays with most others of its landmark. The landmarks are laid anew through what is seen
+    /// of them. Returns whether any region shows another landmark than before. Not between shared() and
+    /// follow().
+    bool adopt(const std::vector<std::vector<int>>& surfaces, const std::vector<Pose>& poses);
+    /// Largest whitened error of a sighting of a shared landmark.
+    double worst_error(const std::vector<Pose>& poses) const;
+
     /// Merges landmarks that coincide by the same rules; call it after the poses moved.
     void merge();
 
@@ -78,6 +88,8 @@ class Landmarks {
         Box box;
         std::array<Eigen::Vector3d, 4> points;
     };
+    std::vector<int> surfaces_of_sightings(const std::vector<std::vector<int>>& surfaces) const;
+    bool are_numbered_alike(const std::vector<int>& before) const;
     bool fits(const Candidate& region, const Landmark& landmark) const;
     void forget_unseen();
 

@@ -35,7 +35,7 @@ struct GraphOptions {
     double landmark_angle_deg = 8;
     double landmark_distance_m = 0.06;
     double landmark_gap_m = 0.5;
-    double landmark_sigma_m = 0.01;
+    double landmark_sigma_m = 0.005;
     int optimise_every = 0;
 
     // Fixed: nobody can tell how to set these without reading the code.
@@ -52,12 +52,12 @@ struct GraphOptions {
     static constexpr double place_rad = 0.17;    ///< and are turned by less
     static constexpr double min_alike_ratio = 0.25;  ///< like points, of those that both should see, of views
                                                      ///< that look alike
-    static constexpr double landmark_extent_m = 0.25;  ///< smaller regions are no landmarks; standard
-                                                       ///< deviation of the shorter side
-    static constexpr double landmark_trigger = 2.0;    ///< standard deviations by which a keyframe's planes
-                                                       ///< must disagree to optimise
-    static constexpr double kernel_width = 3.0;  ///< Cauchy kernel of loop closures, standard deviations
-    static constexpr int max_iterations = 30;    ///< of one optimisation
+    static constexpr double landmark_extent_m = 0.1;  ///< smaller regions are no landmarks; standard
+                                                      ///< deviation of the shorter side
+    static constexpr double landmark_trigger = 2.0;   ///< standard deviations by which a keyframe's planes
+                                                      ///< must disagree to optimise
+    static constexpr double kernel_width = 3.0;       ///< Cauchy kernel of loop closures, standard deviations
+    static constexpr int max_iterations = 30;         ///< of one optimisation
     static constexpr double revision_m = 0.001, revision_rad = 0.0005;  ///< movement of a keyframe that makes
                                                                         ///< a new revision
 

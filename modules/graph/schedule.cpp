@@ -11,6 +11,10 @@ void Schedule::keyframe_added(const News& news) {
     is_due_ = is_due_ || asks(news);
 }
 
+void Schedule::landmarks_changed(double disagreement) {
+    disagreement_ = std::max(disagreement_, disagreement);
+}
+
 /// At once when a loop closure is far from the present poses. What pulls less waits the longer the larger the
 /// graph is, so that the cost a keyframe stays flat; PoseGraph::finish() makes up for what waits.
 bool Schedule::asks(const News& news) const {

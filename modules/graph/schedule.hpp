@@ -20,6 +20,8 @@ class Schedule {
         double worst_new_loop = 0;  ///< whitened error of the worst of these
     };
     void keyframe_added(const News& news);
+    /// Others than before see a landmark: how far they disagree, standard deviations.
+    void landmarks_changed(double disagreement);
 
     bool is_due() const { return is_due_; }
     /// Between start() and end(): nodes must keep their numbers.

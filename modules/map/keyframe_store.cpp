@@ -49,20 +49,21 @@ bool KeyframeStore::is_usable(const PlanarRegion& region) const {
     });
 }
 
-/// By falling number of points.
-std::vector<PlanarRegion> KeyframeStore::usable_regions(const Keyframe& keyframe, MapLosses& losses) const {
-    std::vector<PlanarRegion> regions;
-    for (const PlanarRegion& region : keyframe.regions) {
-        if (!is_usable(region)) {
+/// Which of a keyframe's regions, by falling number of points.
+std::vector<std::size_t> KeyframeStore::usable_regions(const Keyframe& keyframe, MapLosses& losses) const {
+    std::vector<std::size_t> regions;
+    for (std::size_t i = 0; i < keyframe.regions.size(); ++i) {
+        if (!is_usable(keyframe.regions[i])) {
             ++losses.regions_refused;
         } else if (regions.size() == kMaxRegions) {
             ++losses.regions_too_many;
         } else {
-            regions.push_back(region);
+            regions.push_back(i);
         }
     }
-    std::stable_sort(regions.begin(), regions.end(),
-                     [](auto& a, auto& b) { return a.moments.count > b.moments.count; });
+    std::stable_sort(regions.begin(), regions.end(), [&](std::size_t a, std::size_t b) {
+        return keyframe.regions[a].moments.count > keyframe.regions[b].moments.count;
+    });
     return regions;
 }
 
@@ -86,7 +87,11 @@ KeyframeStore::Arrival KeyframeStore::add(const Keyframe& keyframe, MapLosses& l
         return Arrival::kRefused;
     }
     newest_id_ = std::max(newest_id_, keyframe.id);
-    StoredKeyframe& kept = keyframes_[keyframe.id] = stored(keyframe.utime, usable_regions(keyframe, losses));
+    const std::vector<std::size_t> usable = usable_regions(keyframe, losses);
+    std::vector<PlanarRegion> regions;
+    for (const std::size_t i : usable) regions.push_back(keyframe.regions[i]);
+    StoredKeyframe& kept = keyframes_[keyframe.id] = stored(keyframe.utime, regions);
+    for (std::size_t i = 0; i < usable.size(); ++i) kept.regions[i].number = static_cast<int>(usable[i]);
     kept.noise = keyframe.noise;
     return Arrival::kNew;
 }

@@ -71,7 +71,7 @@ class KeyframeStore {
 
   private:
     bool is_usable(const PlanarRegion& region) const;
-    std::vector<PlanarRegion> usable_regions(const Keyframe& keyframe, MapLosses& losses) const;
+    std::vector<std::size_t> usable_regions(const Keyframe& keyframe, MapLosses& losses) const;
 
     double max_extent_m_;
     std::map<int, StoredKeyframe> keyframes_;  ///< by id

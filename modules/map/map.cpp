@@ -150,6 +150,23 @@ Moments PlaneMapper::moments(int plane_id) const {
     return {};
 }
 
+Surfaces PlaneMapper::surfaces() const {
+    Surfaces surfaces;
+    surfaces.utime = map().utime;
+    for (const auto& [id, keyframe] : keyframes_.keyframes()) {
+        if (!keyframe.world_from_camera) continue;
+        KeyframeSurfaces& of = surfaces.keyframes.emplace_back();
+        of.id = id;
+        for (const StoredRegion& region : keyframe.regions) {
+            if (region.number < 0) continue;
+            const auto number = static_cast<std::size_t>(region.number);
+            if (of.planes.size() <= number) of.planes.resize(number + 1, -1);
+            of.planes[number] = region.plane;
+        }
+    }
+    return surfaces;
+}
+
 std::size_t PlaneMapper::working_bytes() const {
     return keyframes_.memory_bytes() + planes_.memory_bytes() + derived_.working_bytes();
 }

@@ -7,6 +7,7 @@
 
 #include "core/keyframe.hpp"
 #include "core/plane_map.hpp"
+#include "core/surfaces.hpp"
 #include "map/derived_map.hpp"
 #include "map/keyframe_store.hpp"
 #include "map/map_losses.hpp"
@@ -77,6 +78,8 @@ class PlaneMapper {
     /// Exact moments of a plane's points, world frame; zero for an unknown id, and of a plane of start_from()
     /// those of points spread evenly over it.
     Moments moments(int plane_id) const;
+    /// Which planes the regions of the keyframes in the map are part of, as of the last rebuild or since.
+    Surfaces surfaces() const;
     /// Ids of the keyframes that saw each plane, ascending, by the plane's id.
     std::map<int, std::vector<int>> sightings() const { return keyframes_.sightings(); }
     /// Keyframes that have no pose yet: at most 4096, then the oldest is dropped.

@@ -41,6 +41,7 @@ MapShell::MapShell(messages::Bus& bus, const MapShellOptions& options)
     : bus_(bus),
       output_(options.output),
       needs_planes_(options.needs_planes),
+      tells_surfaces_(options.map.unites_surfaces()),
       mapper_(options.map),
       watch_(status_, options.start.empty()
                           ? "the map is incomplete"
@@ -183,6 +184,7 @@ void MapShell::tell_losses() {
 void MapShell::publish() {
     bus_.publish(messages::channels::kMap, messages::to_message(mapper_.map(), seq_++, bus_.session()));
     published_us_ = messages::now_us();
+    publish_surfaces();
     // How old a map is, is told by the keyframe that is new in it.
     if (const std::int64_t utime = mapper_.map().utime; utime > newest_utime_) {
         newest_utime_ = utime;
@@ -192,6 +194,14 @@ void MapShell::publish() {
     }
     unwritten_ = true;
     tell();
+}
+
+/// After a rebuild: only that tells planes that were two and are one.
+void MapShell::publish_surfaces() {
+    if (!tells_surfaces_ || mapper_.rebuilds() == told_rebuilds_) return;
+    told_rebuilds_ = mapper_.rebuilds();
+    bus_.publish(messages::channels::kSurfaces,
+                 messages::to_message(mapper_.surfaces(), surfaces_seq_++, bus_.session()));
 }
 
 /// What there is, and what keeps it from the disk.
@@ -217,10 +227,14 @@ int MapShell::poll() {
     return 100;
 }
 
-void MapShell::finish() {
+void MapShell::settle() {
     const std::size_t rebuilds = mapper_.rebuilds();
     mapper_.settle();
     if (mapper_.rebuilds() != rebuilds) publish();
+}
+
+void MapShell::finish() {
+    settle();
     if (journal_) save_poses_and_ids();
     if (!output_.empty() && unwritten_) try_write();
     if (!output_.empty() && !is_ours_ && write_error_.empty())

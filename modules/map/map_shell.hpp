@@ -41,6 +41,8 @@ class MapShell : public messages::Shell {
     /// Writes the map every few seconds, and repeats it on the bus when a second has passed without one.
     int poll() override;
     void finish() override;
+    /// Brings the map up to date with all that came, and says so if that changed it.
+    void settle();
 
     const PlaneMapper& mapper() const { return mapper_; }
 
@@ -52,6 +54,7 @@ class MapShell : public messages::Shell {
     void save_poses_and_ids();
     void tell_losses();
     void publish();
+    void publish_surfaces();
     void tell();
     void try_output();
     void try_write();
@@ -62,6 +65,7 @@ class MapShell : public messages::Shell {
     messages::Bus& bus_;
     std::filesystem::path output_;
     bool needs_planes_;
+    bool tells_surfaces_;
     PlaneMapper mapper_;
     messages::ModuleStatus status_{"map"};
     messages::StreamGuard keyframe_guard_{messages::channels::kKeyframe, "keyframes", status_};
@@ -73,7 +77,8 @@ class MapShell : public messages::Shell {
     std::int64_t saved_us_ = 0;                   ///< wall clock when the journal got the last one
     std::int64_t newest_utime_ = 0;               ///< of the keyframes in the map
     MapLosses told_;                              ///< what the status knows
-    std::int32_t seq_ = 0;
+    std::int32_t seq_ = 0, surfaces_seq_ = 0;
+    std::size_t told_rebuilds_ = 0;  ///< when the surfaces were last told
     std::int64_t published_us_ = 0;  ///< wall clock of the last map; 0: none yet
     std::int64_t last_write_us_ = 0;
     std::string write_error_;  ///< of the last attempt; empty if it went well

@@ -6,6 +6,10 @@ namespace planemap::map {
 OptionList options_of(MapOptions& options) {
     using enum Audience;
     OptionList list("Map");
+    list.add(
+        "rules", options.rules, {"surfaces", "paper"},
+        "Which regions are one plane: by the merging rules of paper section 2.3 alone, or also planes that "
+        "overlap, as far as poses and depth err and no views saw a step between them");
     list.add("merge_angle_deg", options.merge_angle_deg, {0, 45},
              "Largest angle between merged regions (paper section 2.3)");
     list.add("merge_distance_m", options.merge_distance_m, {0, 10},

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <string>
+
 #include "core/option_list.hpp"
 
 namespace planemap::map {
 
 /// Options of PlaneMapper; options_of() says what each is.
 struct MapOptions {
+    std::string rules = "surfaces";
     double merge_angle_deg = 10;
     double merge_distance_m = 0.05;
     double merge_gap_m = 0.5;
@@ -35,6 +38,9 @@ struct MapOptions {
 
     /// Fixed: the evidence that a cell of an outline needs; a far view gives 1, a near one up to 4.
     static constexpr int outline_min_hits = 1;
+
+    /// Whether planes that say one surface twice become one, see unite_surfaces().
+    bool unites_surfaces() const { return rules == "surfaces"; }
 
     /// Throws std::invalid_argument that names every bad field.
     void validate() const;

@@ -32,8 +32,8 @@ void PlaneSet::update(std::size_t i) {
     bounds_[i] = bounds_of(estimates_[i]);
 }
 
-bool PlaneSet::may_touch(const Bounds& a, const Bounds& b) const {
-    if (a.normal.dot(b.normal) < cosine_) return false;
+bool PlaneSet::may_touch(const Bounds& a, const Bounds& b, double cosine) const {
+    if (a.normal.dot(b.normal) < cosine) return false;
     const double gap = rules_.gap_m + rules_.distance_m;
     return ((a.low.array() <= b.high.array() + gap) && (b.low.array() <= a.high.array() + gap)).all();
 }
@@ -53,7 +53,7 @@ std::size_t PlaneSet::partner_of(const PlacedRegion& region) const {
     std::size_t best = none();
     double best_score = 0;
     for (std::size_t i = 0; i < bounds_.size(); ++i) {
-        if (!may_touch(bounds, bounds_[i])) continue;
+        if (!may_touch(bounds, bounds_[i], cosine_)) continue;
         const PlaneEstimate& estimate = estimates_[i];
         const double length = (center - estimate.box.frame_from_box.translation()).norm() +
                               region.box.half_extents.norm() + estimate.box.half_extents.norm();
@@ -70,6 +70,18 @@ std::size_t PlaneSet::partner_of(const PlacedRegion& region) const {
 }
 
 std::vector<std::size_t> PlaneSet::merge(const std::vector<std::size_t>& grown) {
+    return merge(
+        grown, rules_.angle_rad,
+        [this](std::size_t a, std::size_t b) -> std::optional<double> {
+            const auto r = relation(estimates_[a], estimates_[b]);
+            return r ? std::optional(r->score(rules_)) : std::nullopt;
+        },
+        [](std::size_t, std::size_t) {});
+}
+
+std::vector<std::size_t> PlaneSet::merge(const std::vector<std::size_t>& grown, double angle_rad,
+                                         const Score& score_of, const Joined& joined) {
+    const double cosine = std::cos(angle_rad);
     // Pairs by score; a pair counts while neither of the two has changed.
     using Pair = std::tuple<double, std::size_t, std::size_t, int, int>;
     std::priority_queue<Pair, std::vector<Pair>, std::greater<>> pairs;
@@ -78,10 +90,10 @@ std::vector<std::size_t> PlaneSet::merge(const std::vector<std::size_t>& grown) 
     std::vector<char> asked(estimates_.size(), 0);
     const auto ask = [&](std::size_t i) {
         for (std::size_t j = 0; j < estimates_.size(); ++j) {
-            if (j == i || !merged.stands(j) || asked[j] != 0 || !may_touch(bounds_[i], bounds_[j])) continue;
+            if (j == i || !merged.stands(j) || asked[j] != 0 || !may_touch(bounds_[i], bounds_[j], cosine))
+                continue;
             const auto [a, b] = std::minmax(i, j);
-            if (const auto r = relation(estimates_[a], estimates_[b]))
-                pairs.emplace(r->score(rules_), a, b, version[a], version[b]);
+            if (const auto score = score_of(a, b)) pairs.emplace(*score, a, b, version[a], version[b]);
         }
     };
     for (const std::size_t i : grown) {
@@ -99,6 +111,7 @@ std::vector<std::size_t> PlaneSet::merge(const std::vector<std::size_t>& grown) 
         estimates_[a].id = id;
         update(a);
         merged.join(a, b);
+        joined(a, b);
         ++version[a];
         ask(a);
     }

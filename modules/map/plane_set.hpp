@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -27,6 +28,14 @@ class PlaneSet {
     /// those with one of `grown` can. Returns for each plane where it is now; the older id stays.
     std::vector<std::size_t> merge(const std::vector<std::size_t>& grown);
 
+    /// How well two planes fit, the smaller the better, or nothing if they are not one.
+    using Score = std::function<std::optional<double>(std::size_t a, std::size_t b)>;
+    /// Told that one plane is part of another one now.
+    using Joined = std::function<void(std::size_t into, std::size_t from)>;
+    /// The same by another rule, of planes at no more than an angle that the rules' gap does not keep apart.
+    std::vector<std::size_t> merge(const std::vector<std::size_t>& grown, double angle_rad,
+                                   const Score& score, const Joined& joined);
+
     std::vector<PlaneEstimate>& estimates() { return estimates_; }
     const std::vector<PlaneEstimate>& estimates() const { return estimates_; }
 
@@ -37,7 +46,7 @@ class PlaneSet {
         double d;
     };
     static Bounds bounds_of(const PlaneEstimate& estimate);
-    bool may_touch(const Bounds& a, const Bounds& b) const;
+    bool may_touch(const Bounds& a, const Bounds& b, double cosine) const;
     std::optional<RegionRelation> relation(const PlaneEstimate& a, const PlaneEstimate& b) const;
 
     MergeRules rules_;

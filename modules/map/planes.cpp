@@ -16,10 +16,18 @@ MergeRules merge_rules(const MapOptions& options) {
     return {radians(options.merge_angle_deg), options.merge_distance_m, options.merge_gap_m};
 }
 
+std::optional<SurfaceRules> surface_rules(const MapOptions& options) {
+    if (!options.unites_surfaces()) return std::nullopt;
+    SurfaceRules rules;
+    rules.pose_sigma_m = options.pose_sigma_m;
+    return rules;
+}
+
 }  // namespace
 
 Planes::Planes(const MapOptions& options)
     : threads_(options.threads),
+      surfaces_(surface_rules(options)),
       joiner_({options.pose_sigma_m, options.agreement_m}, options.outline_cell_m),
       free_space_(options.see_through_m),
       planes_(merge_rules(options), options.max_extent_m),
@@ -84,7 +92,7 @@ void Planes::fold(int keyframe_id, const StoredKeyframe& keyframe) {
 void Planes::rebuild(KeyframeStore& store) {
     Rebuild rebuild(store, folded_, ids_, model());
     planes_.clear();
-    rebuild.join(planes_, joiner_);
+    rebuild.join(planes_, joiner_, surfaces_);
     rebuild.draw(planes_, joiner_, free_space_, threads_);
     rebuild.carry_over_ids(planes_);
     count_keyframes(store);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "map/folded_planes.hpp"
@@ -12,6 +13,7 @@
 #include "map/plane_ids.hpp"
 #include "map/plane_set.hpp"
 #include "map/region_joiner.hpp"
+#include "map/surfaces.hpp"
 
 namespace planemap::map {
 
@@ -49,6 +51,7 @@ class Planes {
     void count_keyframes(const KeyframeStore& store);
 
     int threads_;
+    std::optional<SurfaceRules> surfaces_;  ///< none: the paper's rules alone
     RegionJoiner joiner_;
     FreeSpace free_space_;
     PlaneSet planes_;

@@ -19,7 +19,8 @@ Rebuild::Rebuild(KeyframeStore& store, FoldedPlanes& folded, PlaneIds& ids, cons
         for (std::size_t i = 0; i < keyframe.regions.size(); ++i) {
             StoredRegion& region = keyframe.regions[i];
             weights.push_back(model.weight(region, keyframe.noise) * static_cast<double>(region.count));
-            entries_.push_back({id, i, &keyframe, region.plane});
+            entries_.push_back({id, &keyframe, i});
+            planes_before_.push_back(region.plane);
             region.plane = -1;
         }
     }
@@ -29,7 +30,7 @@ Rebuild::Rebuild(KeyframeStore& store, FoldedPlanes& folded, PlaneIds& ids, cons
                      [&](std::size_t a, std::size_t b) { return weights[a] > weights[b]; });
 }
 
-void Rebuild::join(PlaneSet& planes, RegionJoiner& joiner) {
+void Rebuild::join(PlaneSet& planes, RegionJoiner& joiner, const std::optional<SurfaceRules>& surfaces) {
     folded_.unite();
     for (const PlaneEstimate& folded : folded_.planes()) {
         PlaneEstimate& plane = planes.estimates()[planes.push_back(folded)];
@@ -37,8 +38,8 @@ void Rebuild::join(PlaneSet& planes, RegionJoiner& joiner) {
         plane.changed_cells = PlaneEstimate::kAllCells;
     }
     for (const std::size_t i : order_) {
-        Entry& entry = entries_[i];
-        const Observation seen(*entry.keyframe, entry.stored_region());
+        SeenRegion& entry = entries_[i];
+        const Observation seen(*entry.keyframe, entry.stored());
         if (!seen.is_near()) continue;
         entry.plane = joiner.join_best(planes, ids_, seen);
         entry.world_from_box = seen.world_from_box();
@@ -49,9 +50,18 @@ void Rebuild::join(PlaneSet& planes, RegionJoiner& joiner) {
         planes.estimates()[i].refit();
         planes.update(i);
     }
-    const std::vector<std::size_t> now = planes.merge(all);
-    for (Entry& entry : entries_)
+    std::vector<std::size_t> now = planes.merge(all);
+    for (SeenRegion& entry : entries_)
         if (entry.plane != PlaneSet::none()) entry.plane = now[entry.plane];
+    if (surfaces) {
+        const std::vector<std::size_t> united = unite_surfaces(planes, entries_, *surfaces);
+        for (std::size_t& plane : now) plane = united[plane];
+    }
+    rename_folded(planes, now);
+}
+
+/// Folded planes, which are the first ones, are part of those that they are in now.
+void Rebuild::rename_folded(const PlaneSet& planes, const std::vector<std::size_t>& now) {
     std::map<int, int> merged_into;
     for (std::size_t i = 0; i < folded_.planes().size(); ++i)
         merged_into[folded_.planes()[i].id] = planes.estimates()[now[i]].id;
@@ -61,9 +71,9 @@ void Rebuild::join(PlaneSet& planes, RegionJoiner& joiner) {
 
 void Rebuild::draw(PlaneSet& planes, const RegionJoiner& joiner, const FreeSpace& free_space,
                    int threads) const {
-    std::vector<std::vector<const Entry*>> seen(planes.estimates().size());
+    std::vector<std::vector<const SeenRegion*>> seen(planes.estimates().size());
     for (const std::size_t i : order_) {
-        const Entry& entry = entries_[i];
+        const SeenRegion& entry = entries_[i];
         if (entry.plane != PlaneSet::none()) seen[entry.plane].push_back(&entry);
     }
     std::vector<Viewpoint> viewpoints;
@@ -77,8 +87,8 @@ void Rebuild::draw(PlaneSet& planes, const RegionJoiner& joiner, const FreeSpace
         RegionJoiner own = joiner;
         for (std::size_t i = next++; i < seen.size(); i = next++) {
             PlaneEstimate& plane = planes.estimates()[i];
-            for (const Entry* entry : seen[i])
-                own.draw(plane, entry->world_from_box, entry->stored_region(), *entry->keyframe);
+            for (const SeenRegion* entry : seen[i])
+                own.draw(plane, entry->world_from_box, entry->stored(), *entry->keyframe);
             free_space.carve(plane, viewpoints);
             plane.changed_cells = PlaneEstimate::kAllCells;
         }
@@ -93,14 +103,17 @@ void Rebuild::carry_over_ids(PlaneSet& planes) {
     for (const PlaneEstimate& plane : planes.estimates()) now.push_back(plane.id);
     for (const PlaneEstimate& folded : folded_.planes()) kept.push_back(folded.id);
     PlaneIds::Votes votes;
-    for (const Entry& entry : entries_) {
-        if (entry.plane == PlaneSet::none() || entry.plane_before < 0) continue;
-        votes[{entry.plane_before, now[entry.plane]}] += static_cast<double>(entry.stored_region().count);
+    for (std::size_t i = 0; i < entries_.size(); ++i) {
+        const SeenRegion& entry = entries_[i];
+        if (entry.plane == PlaneSet::none() || planes_before_[i] < 0) continue;
+        votes[{planes_before_[i], now[entry.plane]}] += static_cast<double>(entry.stored().count);
     }
     const std::map<int, int> id_of = ids_.carry_over(now, kept, votes, first_provisional_id_);
     for (PlaneEstimate& plane : planes.estimates()) plane.id = id_of.at(plane.id);
-    for (Entry& entry : entries_) {
-        if (entry.plane != PlaneSet::none()) entry.stored_region().plane = planes.estimates()[entry.plane].id;
+    for (SeenRegion& entry : entries_) {
+        if (entry.plane == PlaneSet::none()) continue;
+        StoredRegion& region = store_.keyframes().at(entry.keyframe_id).regions[entry.region];
+        region.plane = planes.estimates()[entry.plane].id;
     }
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "map/folded_planes.hpp"
@@ -10,6 +11,7 @@
 #include "map/plane_ids.hpp"
 #include "map/plane_set.hpp"
 #include "map/region_joiner.hpp"
+#include "map/surfaces.hpp"
 
 namespace planemap::map {
 
@@ -19,33 +21,24 @@ class Rebuild {
     /// Puts all keyframes where their poses say, and takes their regions out of their planes.
     Rebuild(KeyframeStore& store, FoldedPlanes& folded, PlaneIds& ids, const ObservationModel& model);
 
-    /// Regions join the folded planes and make new ones, the weightiest first; then these are merged.
-    /// `planes` is empty before.
-    void join(PlaneSet& planes, RegionJoiner& joiner);
+    /// Regions join the folded planes and make new ones, the weightiest first; then these are merged, and
+    /// with rules of surfaces, what says one surface twice is united. `planes` is empty before.
+    void join(PlaneSet& planes, RegionJoiner& joiner, const std::optional<SurfaceRules>& surfaces);
     /// The shapes: all regions, and then what all keyframes see past.
     void draw(PlaneSet& planes, const RegionJoiner& joiner, const FreeSpace& free_space, int threads) const;
     /// Ids of before for planes, regions and folded planes.
     void carry_over_ids(PlaneSet& planes);
 
   private:
-    /// A region on its way from plane to plane.
-    struct Entry {
-        int keyframe_id;
-        std::size_t region;
-        StoredKeyframe* keyframe;
-        int plane_before;
-        std::size_t plane = PlaneSet::none();  ///< index of the plane it joined; none(): it is too far out
-        Pose world_from_box = Pose::Identity();
-
-        StoredRegion& stored_region() const { return keyframe->regions[region]; }
-    };
+    void rename_folded(const PlaneSet& planes, const std::vector<std::size_t>& now);
 
     KeyframeStore& store_;
     FoldedPlanes& folded_;
     PlaneIds& ids_;
     int first_provisional_id_;
-    std::vector<Entry> entries_;      ///< by keyframe and region
-    std::vector<std::size_t> order_;  ///< of them, the weightiest first
+    std::vector<SeenRegion> entries_;  ///< by keyframe and region; none() as plane: it is too far out
+    std::vector<int> planes_before_;   ///< of the entries
+    std::vector<std::size_t> order_;   ///< of them, the weightiest first
 };
 
 }  // namespace planemap::map

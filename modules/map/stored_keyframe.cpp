@@ -126,6 +126,7 @@ void take_points(StoredRegion& region, const StoredRegion& other, const Pose& ca
 void take_region(StoredKeyframe& keyframe, const StoredRegion& other, const StoredKeyframe& owner,
                  const Pose& camera_from_other) {
     StoredRegion& region = keyframe.regions.emplace_back(other);
+    region.number = -1;
     const PlacedRegion placed(camera_from_other, other);
     region.camera_from_box =
         Eigen::Quaterniond(placed.box.frame_from_box.linear()).normalized().cast<float>();

@@ -19,7 +19,7 @@ inline bool is_near_origin(const Eigen::Vector3d& p_world) {
     return p_world.norm() <= kMaxCoordinate_m;  // not NaN
 }
 
-/// A planar region in 96 bytes and 4 a vertex of its outline, camera frame. Single precision about the
+/// A planar region in 100 bytes and 4 a vertex of its outline, camera frame. Single precision about the
 /// region's own centre and axes: a micrometre at ten metres.
 struct StoredRegion {
     using Rotation = Eigen::Quaternion<float, Eigen::DontAlign>;
@@ -34,6 +34,7 @@ struct StoredRegion {
     std::uint32_t first = 0, last = 0;  ///< of StoredKeyframe::vertices; last is one past the end
     int plane = -1;                     ///< id of the map plane it went to; -1: none
     int keyframes = 1;                  ///< that saw it: its own, and those that handed theirs on to it
+    int number = -1;                    ///< in Keyframe::regions; -1: of a keyframe that went
 };
 
 struct StoredKeyframe {

@@ -15,6 +15,7 @@ inline constexpr const char* kLocalFromOdom = "PLANEMAP_LOCAL_FROM_ODOM";    ///
 inline constexpr const char* kBodyFromCamera = "PLANEMAP_BODY_FROM_CAMERA";  ///< bot_core.rigid_transform_t
 inline constexpr const char* kKeyframe = "PLANEMAP_KEYFRAME";                ///< planemap.keyframe_t
 inline constexpr const char* kTrajectory = "PLANEMAP_TRAJECTORY";            ///< planemap.trajectory_t
+inline constexpr const char* kSurfaces = "PLANEMAP_SURFACES";                ///< planemap.surfaces_t
 inline constexpr const char* kMap = "PLANEMAP_MAP";                          ///< planemap.plane_map_t
 inline constexpr const char* kOctomapSize = "PLANEMAP_OCTOMAP_SIZE";         ///< planemap.map_size_t
 inline constexpr const char* kPreviewColor = "PLANEMAP_PREVIEW_COLOR";       ///< bot_core.image_t

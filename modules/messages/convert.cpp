@@ -405,6 +405,40 @@ KeyframeTrajectory from_message(const trajectory_t& message) {
     return trajectory;
 }
 
+surfaces_t to_message(const Surfaces& surfaces, std::int32_t seq, std::int64_t session) {
+    surfaces_t message;
+    message.session = session;
+    message.utime = surfaces.utime;
+    message.seq = seq;
+    message.n_keyframes = count32(surfaces.keyframes.size());
+    for (const KeyframeSurfaces& keyframe : surfaces.keyframes) {
+        message.ids.push_back(keyframe.id);
+        message.region_counts.push_back(static_cast<std::int16_t>(count32(keyframe.planes.size())));
+        message.planes.insert(message.planes.end(), keyframe.planes.begin(), keyframe.planes.end());
+    }
+    message.n_regions = count32(message.planes.size());
+    return message;
+}
+
+Surfaces from_message(const surfaces_t& message) {
+    Surfaces surfaces;
+    surfaces.utime = checked_utime(message.utime, "surfaces.utime");
+    const auto count = static_cast<std::size_t>(message.n_keyframes);
+    std::size_t first = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        require(message.ids[i] >= 0 && (i == 0 || message.ids[i] > message.ids[i - 1]), "surfaces.ids",
+                "do not ascend");
+        const auto regions = static_cast<std::size_t>(message.region_counts[i]);
+        require(message.region_counts[i] >= 0 && first + regions <= message.planes.size(),
+                "surfaces.region_counts", "do not sum up to n_regions");
+        const auto from = message.planes.begin() + static_cast<std::ptrdiff_t>(first);
+        surfaces.keyframes.push_back({message.ids[i], {from, from + message.region_counts[i]}});
+        first += regions;
+    }
+    require(first == message.planes.size(), "surfaces.region_counts", "do not sum up to n_regions");
+    return surfaces;
+}
+
 namespace {
 
 map_plane_t to_message(const MapPlane& plane) {

@@ -11,6 +11,7 @@
 #include <planemap/odometry_t.hpp>
 #include <planemap/planar_regions_t.hpp>
 #include <planemap/plane_map_t.hpp>
+#include <planemap/surfaces_t.hpp>
 #include <planemap/trajectory_t.hpp>
 #include <span>
 #include <vector>
@@ -21,6 +22,7 @@
 #include "core/keyframe.hpp"
 #include "core/plane_map.hpp"
 #include "core/region.hpp"
+#include "core/surfaces.hpp"
 #include "messages/error.hpp"
 
 namespace planemap::messages {
@@ -60,6 +62,8 @@ Keyframe from_message(const keyframe_t& message);
 
 trajectory_t to_message(const KeyframeTrajectory& trajectory, std::int32_t seq, std::int64_t session = 0);
 KeyframeTrajectory from_message(const trajectory_t& message);
+surfaces_t to_message(const Surfaces& surfaces, std::int32_t seq, std::int64_t session = 0);
+Surfaces from_message(const surfaces_t& message);
 
 /// The map in 69 bytes a plane, 2 an outline ring and 4 an outline vertex: the very values that PlaneMap
 /// holds, so nothing is lost but the ends of lines and points, which are rounded to single precision along

@@ -15,6 +15,7 @@
 #include <planemap/odometry_t.hpp>
 #include <planemap/planar_regions_t.hpp>
 #include <planemap/plane_map_t.hpp>
+#include <planemap/surfaces_t.hpp>
 #include <planemap/trajectory_t.hpp>
 #include <string>
 
@@ -149,6 +150,12 @@ void walk(Walker& w, const keyframe_t*) {
 void walk(Walker& w, const trajectory_t*) {
     w.skip(8 + 4 + 4 + 4 + kTransform, "trajectory");
     w.array(w.length("n_keyframes"), 4 + 8 + kTransform, "keyframes");
+    w.skip(8, "session");
+}
+void walk(Walker& w, const surfaces_t*) {
+    w.skip(8 + 4, "surfaces");
+    w.array(w.length("n_keyframes"), 4 + 2, "keyframes");
+    w.array(w.length("n_regions"), 4, "planes");
     w.skip(8, "session");
 }
 void walk(Walker& w, const plane_map_t*) {
@@ -287,6 +294,7 @@ PLANEMAP_DECODES(planar_regions_t)
 PLANEMAP_DECODES(odometry_t)
 PLANEMAP_DECODES(keyframe_t)
 PLANEMAP_DECODES(trajectory_t)
+PLANEMAP_DECODES(surfaces_t)
 PLANEMAP_DECODES(plane_map_t)
 PLANEMAP_DECODES(map_size_t)
 PLANEMAP_DECODES(module_status_t)

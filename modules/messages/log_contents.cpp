@@ -17,6 +17,7 @@
 #include <planemap/odometry_t.hpp>
 #include <planemap/planar_regions_t.hpp>
 #include <planemap/plane_map_t.hpp>
+#include <planemap/surfaces_t.hpp>
 #include <planemap/trajectory_t.hpp>
 
 #include "messages/decode.hpp"
@@ -53,7 +54,7 @@ std::string type_name(std::uint64_t fingerprint) {
                   bot_core::raw_t, bot_core::rigid_transform_t, bot_core::sensor_status_t>("bot_core", all);
         add_names<kinect::frame_msg_t>("kinect", all);
         add_our_names<camera_info_t, keyframe_t, map_size_t, module_status_t, odometry_t, planar_regions_t,
-                      plane_map_t, trajectory_t>(all);
+                      plane_map_t, surfaces_t, trajectory_t>(all);
         return all;
     }();
     const auto known = names.find(fingerprint);

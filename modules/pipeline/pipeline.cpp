@@ -42,11 +42,23 @@ void Pipeline::finish() {
     settle();
     odometry_.finish();
     settle();
-    if (graph_) graph_->finish();
-    settle();
+    finish_graph();
     if (map_) map_->finish();
     settle();
     if (octomap_) octomap_->finish();
+}
+
+/// Poses and surfaces say something about each other: a few times in turn.
+void Pipeline::finish_graph() {
+    constexpr int kRounds = 4;
+    for (int i = 0; graph_ && i < kRounds; ++i) {
+        graph_->finish();
+        settle();
+        if (!map_) return;
+        map_->settle();
+        settle();
+        if (!graph_->has_new_surfaces()) return;
+    }
 }
 
 const KeyframeTrajectory& Pipeline::keyframes() const {

@@ -71,6 +71,8 @@ class Pipeline {
     octomap::OctomapShell* octomap() { return octomap_.get(); }
 
   private:
+    void finish_graph();
+
     messages::Bus& bus_;
     std::shared_ptr<messages::FrameDecoder> decoder_;
     segmentation::SegmentationShell segmentation_;

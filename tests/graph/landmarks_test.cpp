@@ -110,6 +110,56 @@ TEST(Landmarks, ANodeThatGoesLeavesWhatItSawToItsKeeper) {
     EXPECT_EQ(landmarks.landmarks().size(), 3u);
 }
 
+/// A floor that the poses put 15 cm apart: two landmarks, until the map says that it is one surface.
+TEST(Landmarks, ASurfaceOfTheMapIsOneLandmark) {
+    Landmarks landmarks({});
+    const Pose eye = Pose::Identity(), raised = make_pose({0, 0, 0.15}, Eigen::Quaterniond::Identity());
+    const PlanarRegion wall = rectangle(eye, {0, 2, 0}, 1.5 * kX, 1.0 * kZ);
+    const std::vector<Pose> poses{eye, eye, raised, raised};
+    for (int node = 0; node < 4; ++node)
+        landmarks.add(node, {wall, floor_seen(eye)}, poses[static_cast<std::size_t>(node)], kNoise);
+    ASSERT_EQ(landmarks.landmarks().size(), 3u);
+    EXPECT_LT(landmarks.worst_error(poses), 1e-6);
+
+    EXPECT_TRUE(landmarks.adopt({{4, 7}, {4, 7}, {4, 7}, {4, 7}}, poses));
+    ASSERT_EQ(landmarks.landmarks().size(), 2u);
+    EXPECT_EQ(landmarks.shared().size(), 8u);
+    EXPECT_NEAR(landmarks.landmarks()[1].plane.signed_distance({0, 0, 0}), 1 - 0.075, 1e-9);
+    EXPECT_GT(landmarks.worst_error(poses), 1);
+    EXPECT_FALSE(landmarks.adopt({{9, 2}, {9, 2}, {9, 2}, {9, 2}}, poses)) << "other names of the same";
+    landmarks.merge();
+    EXPECT_EQ(landmarks.shared().size(), 8u);
+    // Two again: what the map does not name follows most others.
+    EXPECT_TRUE(landmarks.adopt({{4, 7}, {}, {4, 8}, {4, 8}}, poses));
+    EXPECT_EQ(landmarks.landmarks().size(), 3u);
+    ASSERT_EQ(landmarks.shared().size(), 7u) << "one floor is seen by node 0 alone";
+    EXPECT_EQ(landmarks.shared()[1].landmark, landmarks.shared()[0].landmark);
+    EXPECT_EQ(landmarks.shared()[2].landmark, landmarks.shared().back().landmark);
+}
+
+/// One that fits two landmarks is of neither, until the map knows.
+TEST(Landmarks, TheMapTellsWhichOfTwoARegionShows) {
+    Landmarks landmarks({});
+    const Pose eye = Pose::Identity();
+    landmarks.add(0, {floor_seen(eye, -1.0)}, eye, kNoise);
+    landmarks.add(1, {floor_seen(eye, -1.08)}, eye, kNoise);
+    landmarks.add(2, {floor_seen(eye, -1.04)}, eye, kNoise);
+    EXPECT_TRUE(landmarks.shared().empty());
+    EXPECT_TRUE(landmarks.adopt({{0}, {1}, {1}}, {eye, eye, eye}));
+    ASSERT_EQ(landmarks.shared().size(), 2u);
+    EXPECT_EQ(landmarks.shared()[0].node, 1);
+    landmarks.hand_over(2, 1, Pose::Identity());
+    EXPECT_TRUE(landmarks.shared().empty());
+}
+
+TEST(Landmarks, SurfacesOfNothingChangeNothing) {
+    Landmarks landmarks({});
+    EXPECT_FALSE(landmarks.adopt({}, {}));
+    landmarks.add(0, {floor_seen(Pose::Identity())}, Pose::Identity(), kNoise);
+    EXPECT_FALSE(landmarks.adopt({{-1, 3, 4}}, {Pose::Identity()}));
+    EXPECT_EQ(landmarks.landmarks().size(), 1u);
+}
+
 TEST(Landmarks, NothingComesOfRegionsWithoutAPlane) {
     Landmarks landmarks({});
     EXPECT_EQ(landmarks.add(0, {PlanarRegion{}}, Pose::Identity(), kNoise), 0);

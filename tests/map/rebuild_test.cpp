@@ -34,7 +34,7 @@ struct World {
     PlaneSet rebuilt(int threads = 1) {
         PlaneSet planes(kRules, 200);
         Rebuild rebuild(store, folded, ids, joiner.model());
-        rebuild.join(planes, joiner);
+        rebuild.join(planes, joiner, SurfaceRules{});
         rebuild.draw(planes, joiner, FreeSpace(0.05), threads);
         rebuild.carry_over_ids(planes);
         return planes;

@@ -299,5 +299,37 @@ TEST(Convert, MapReferencesMustExist) {
     });
 }
 
+TEST(Convert, SurfacesThereAndBack) {
+    const Surfaces surfaces = test::sample_surfaces();
+    const Surfaces back = from_message(to_message(surfaces, 1));
+    EXPECT_EQ(back.utime, surfaces.utime);
+    ASSERT_EQ(back.keyframes.size(), surfaces.keyframes.size());
+    for (std::size_t i = 0; i < surfaces.keyframes.size(); ++i) {
+        EXPECT_EQ(back.keyframes[i].id, surfaces.keyframes[i].id);
+        EXPECT_EQ(back.keyframes[i].planes, surfaces.keyframes[i].planes);
+    }
+}
+
+TEST(Convert, SurfacesOfWhichTheCountsDoNotAgreeAreRefused) {
+    const surfaces_t good = to_message(test::sample_surfaces(), 1);
+    const auto with = [&](std::size_t keyframe, std::int16_t regions) {
+        surfaces_t message = good;
+        message.region_counts[keyframe] = regions;
+        return message;
+    };
+    EXPECT_THROW(from_message(with(0, 4)), MessageError);
+    EXPECT_THROW(from_message(with(0, 2)), MessageError);
+    EXPECT_THROW(from_message(with(1, -1)), MessageError);
+    surfaces_t message = good;
+    message.ids = {0, 7, 2};
+    EXPECT_THROW(from_message(message), MessageError);
+    message = good;
+    message.ids[0] = -1;
+    EXPECT_THROW(from_message(message), MessageError);
+    message = good;
+    message.utime = INT64_MAX;
+    EXPECT_THROW(from_message(message), MessageError);
+}
+
 }  // namespace
 }  // namespace planemap::messages

@@ -89,6 +89,7 @@ TEST(Decode, SurvivesHostileBytes) {
     torment(to_message(OdometryEstimate(), 4));
     torment(to_message(test::sample_keyframe(), 5));
     torment(to_message(sample_trajectory(), 6));
+    torment(to_message(test::sample_surfaces(), 6));
     torment(to_message(sample_map(), 7));
     torment(sample_kinect());
     torment(sample_status());

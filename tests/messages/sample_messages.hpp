@@ -73,6 +73,11 @@ inline KeyframeTrajectory sample_trajectory() {
     return trajectory;
 }
 
+/// Of a keyframe without regions, too.
+inline Surfaces sample_surfaces() {
+    return {400, {{0, {3, -1, 5}}, {2, {}}, {7, {5}}}};
+}
+
 template <typename T>
 std::vector<std::uint8_t> encoded(const T& message) {
     std::vector<std::uint8_t> bytes(static_cast<std::size_t>(message.getEncodedSize()));
