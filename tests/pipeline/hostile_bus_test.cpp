@@ -55,6 +55,10 @@ Message sent_by(std::int64_t id, Message message) {
         auto trajectory = messages::decode<trajectory_t>(message.bytes);
         trajectory.session = id;
         message.bytes = encoded(trajectory);
+    } else if (message.channel == channels::kSurfaces) {
+        auto surfaces = messages::decode<surfaces_t>(message.bytes);
+        surfaces.session = id;
+        message.bytes = encoded(surfaces);
     }
     return message;
 }
@@ -106,7 +110,7 @@ const std::vector<Module>& modules() {
              return std::make_unique<odometry::OdometryShell>(bus, decoder(bus), odometry::OdometryOptions());
          }},
         {"graph",
-         {channels::kKeyframe},
+         {channels::kKeyframe, channels::kSurfaces},
          channels::kTrajectory,
          [](messages::Bus& bus) { return std::make_unique<graph::GraphShell>(bus, graph::GraphOptions()); }},
         {"map",
@@ -187,8 +191,9 @@ TEST_P(HostileBus, EveryMessageTwice) {
     std::int64_t extra = 0;
     for (const Message& message : stream_) {
         twice.insert(twice.end(), 2, message);
-        // A camera is described again and again, a trajectory for those who come late: no loss.
-        extra += !is_camera(message) && message.channel != channels::kTrajectory;
+        // A camera is described again and again, trajectory and surfaces for those who come late: no loss.
+        extra += !is_camera(message) && message.channel != channels::kTrajectory &&
+                 message.channel != channels::kSurfaces;
     }
     expect_unmoved(twice, extra);
 }
