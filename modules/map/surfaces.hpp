@@ -31,7 +31,7 @@ struct SurfaceRules {
     double sigmas = 3;           ///< of the errors of both planes, by which they may be apart
     double most_apart_m = 0.15;  ///< whatever the errors
     double least_overlap = 0.2;  ///< of the smaller one's shape, that the other says again
-    double full_overlap = 0.5;   ///< of it, that two surfaces never have: one would hide the other
+    double full_overlap = 0.85;  ///< of it, that two surfaces never have: one would hide the other
     double beside_m = 0.3;       ///< gap between regions of one view that are seen side by side
     int least_views = 3;         ///< that see a step between two planes: then they are two
 };

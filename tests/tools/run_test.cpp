@@ -412,7 +412,10 @@ TEST_F(RunTest, RedkitchenIsTrackedAndItsMapIsSmall) {
     EXPECT_GE(sizes.at("octomap_memory").get<double>() / sizes.at("plane_map_message").get<double>(), 100);
     EXPECT_LE(sizes.at("plane_map_message").get<double>(), 8192);
     EXPECT_LE(sizes.at("plane_map_memory").get<double>(), 2 * sizes.at("plane_map_message").get<double>());
-    EXPECT_GE(r.at("coverage").at("leaves_explained").get<double>(), 0.75);
+    // A surface that stands twice explains more of the leaves: 0.77 where walls did.
+    EXPECT_GE(r.at("coverage").at("leaves_explained").get<double>(), 0.7);
+    EXPECT_LT(r.at("doubled_area").get<double>(), 0.01);
+    EXPECT_GT(r.at("explained_points").get<double>(), 0.84);
     EXPECT_GE(r.at("coverage").at("area_supported").get<double>(), 0.9);
 }
 
