@@ -64,7 +64,7 @@ void add_window(WorldBuilder& office) {
                    {.back = true});
 }
 
-/// The door's frame and the open leaf.
+/// The door's frame.
 void add_doorway(WorldBuilder& office) {
     constexpr double kNear = -kWallThickness, kDoorWidth = kDoorTo - kDoorFrom;
     office.add_panel("door jamb west", {kDoorFrom, kNear, kDoorZ}, kNorth, kDown, kWallThickness, kDoorZ,
@@ -72,11 +72,6 @@ void add_doorway(WorldBuilder& office) {
     office.add_panel("door jamb east", {kDoorTo, 0, kDoorZ}, kSouth, kDown, kWallThickness, kDoorZ, kOak);
     office.add_panel("door lintel", {kDoorFrom, kNear, kDoorZ}, kEast, kNorth, kDoorWidth, kWallThickness,
                      kOak);
-    const double opened = radians(110);
-    const Vector3d along(std::cos(opened), std::sin(opened), 0);
-    office.add_box("door", {{kDoorFrom, 0.02, 0.01}, along}, {kDoorWidth, 0.04, kDoorZ - 0.02}, kBeech,
-                   kBeech, {});
-    office.add_picture(0.25, 0.45, 0.4, 0.3, kPoster);
 }
 
 /// The corridor behind the door.
@@ -236,10 +231,18 @@ std::vector<Waypoint> office_places() {
 
 }  // namespace
 
+void add_office_door(WorldBuilder& office, double opened) {
+    const Vector3d along(std::cos(opened), std::sin(opened), 0);
+    office.add_box("door", {kOfficeHinge + 0.01 * kUp, along}, {kDoorTo - kDoorFrom, 0.04, kDoorZ - 0.02},
+                   kBeech, kBeech, {});
+    office.add_picture(0.25, 0.45, 0.4, 0.3, kPoster);
+}
+
 void add_office_room(WorldBuilder& office) {
     add_room(office);
     add_window(office);
     add_doorway(office);
+    add_office_door(office, kOfficeDoorOpened);
     add_furniture(office);
     office.world().lamps = {{{1.7, 2.5, 2.5}, 1.1}, {{4.3, 2.4, 2.5}, 1.1}};
 }
@@ -261,19 +264,25 @@ std::vector<Waypoint> office_tour() {
             {{2.28, 2.08, 1.45}, {1.2, 0.3, 1.0}},   {{2.10, 2.22, 1.45}, {0.4, 1.2, 1.0}}};
 }
 
-World make_office(std::uint64_t seed, double texel_scale) {
-    WorldBuilder office("office", seed, texel_scale);
+void add_office(WorldBuilder& office, bool with_door) {
     add_room(office);
     add_window(office);
     add_corridor(office);
     add_doorway(office);
+    if (with_door) add_office_door(office, kOfficeDoorOpened);
     add_furniture(office);
     World& world = office.world();
     world.lamps = {{{1.7, 2.5, 2.5}, 1.1}, {{4.3, 2.4, 2.5}, 1.1}, {{3.3, -0.9, 2.3}, 0.8}};
-    world.tour = office_tour();
-    world.places = office_places();
     world.free_from = {1.2, 0.9, 0.4};
     world.free_to = {4.8, 4.2, 2.3};
+}
+
+World make_office(std::uint64_t seed, double texel_scale) {
+    WorldBuilder office("office", seed, texel_scale);
+    add_office(office, true);
+    World& world = office.world();
+    world.tour = office_tour();
+    world.places = office_places();
     return std::move(world);
 }
 

@@ -92,7 +92,8 @@ World make_clutter(std::uint64_t seed, double texel_scale) {
     WorldBuilder clutter("clutter", seed, texel_scale);
     World& world = clutter.world();
     for (std::uint64_t i = 0; i < 24; ++i)
-        world.textures.push_back(make_texture(kLooks[i % 6], 0.12, 0.12, mix(seed, 59, i), texel_scale));
+        world.textures.push_back(std::make_shared<const Texture>(
+            make_texture(kLooks[i % 6], 0.12, 0.12, mix(seed, 59, i), texel_scale)));
     for (std::uint64_t i = 0; i < kPieces; ++i) {
         const auto roll = [&](std::uint64_t k, double low, double high) {
             return uniform(mix(seed, 61, i, k), low, high);

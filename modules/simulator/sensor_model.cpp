@@ -4,9 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/angle.hpp"
-#include "core/rounding.hpp"
 #include "core/validation.hpp"
+#include "simulator/depth_reading.hpp"
 
 namespace planemap::simulator {
 
@@ -28,21 +27,6 @@ void DepthSensorOptions::validate() const {
 }
 
 namespace {
-
-/// Depth to units; 0 outside the range.
-class RawScale {
-  public:
-    explicit RawScale(const DepthSensorOptions& options)
-        : units_(static_cast<float>(options.units_per_metre)),
-          min_(static_cast<float>(options.min_m)),
-          max_(static_cast<float>(std::min(options.max_m, 65534 / options.units_per_metre))) {}
-    std::uint16_t operator()(float z) const {
-        return z >= min_ && z <= max_ ? nearest_whole<std::uint16_t>(z * units_) : std::uint16_t{0};
-    }
-
-  private:
-    float units_, min_, max_;
-};
 
 /// Depth as a disparity with noise, in steps.
 struct Measurement {
@@ -71,7 +55,9 @@ class DepthReader {
     DepthReader(const World& world, const View& view, const DepthSensorOptions& options,
                 const GaussianTable& gaussian, std::uint64_t seed)
         : view_(view),
-          jitter_limit_(static_cast<unsigned>(256 * options.edge_jitter)),
+          jitter_limit_(options.edges ? static_cast<unsigned>(256 * options.edge_jitter) : 0),
+          edges_(options.edges),
+          holes_(options.holes),
           gaussian_(gaussian),
           seed_(seed),
           to_raw_(options),
@@ -79,18 +65,10 @@ class DepthReader {
                        static_cast<float>(options.disparity_steps), static_cast<float>(options.sigma.base_m),
                        static_cast<float>(options.sigma.quadratic_per_m),
                        static_cast<float>(options.sigma.offset_m)},
-          disparity_at_1m_(static_cast<float>(view.camera.fx * options.baseline_m)),
-          cos_from_(static_cast<float>(std::cos(radians(options.grazing_from_deg)))),
-          cos_to_(static_cast<float>(std::cos(radians(options.grazing_to_deg)))) {
-        const Pose camera_from_world = view.world_from_camera.inverse();
-        for (const Rectangle& rectangle : world.rectangles) {
-            const Plane plane =
-                camera_from_world * world.surfaces[static_cast<std::size_t>(rectangle.surface)].plane;
-            surface_of_.push_back(rectangle.surface);
-            distance_of_.push_back(static_cast<float>(plane.d));
-        }
+          occlusion_(view.camera, options.baseline_m),
+          grazing_(world, view, options, seed) {
+        for (const Rectangle& rectangle : world.rectangles) surface_of_.push_back(rectangle.surface);
         const auto width = static_cast<std::size_t>(view.camera.width);
-        projector_.resize(2 * width + 2);
         for (auto* row : {&inverse_, &noise_, &depth_}) row->resize(width);
         at_edge_.resize(width);
         for (auto* row : {&here_, &below_}) {
@@ -104,16 +82,17 @@ class DepthReader {
     void read_row(int v, std::uint16_t* out) {
         std::swap(here_, below_);
         fill_random(v + 1, below_);
-        light_up(v);
-        find_edges(v);
         const float* inverse_depth = view_.inverse_depth.row(v);
+        occlusion_.light_up(inverse_depth);
+        find_edges(v);
         const auto width = static_cast<std::size_t>(view_.camera.width);
         for (std::size_t i = 0; i < width; ++i) {
             const int u = static_cast<int>(i);
             const auto [seen_u, seen_v] = at_edge_[i] != 0 ? jittered(u, v) : std::pair{u, v};
             const float inverse = at_edge_[i] != 0 ? view_.inverse_depth(seen_u, seen_v) : inverse_depth[i];
-            const bool dark =
-                inverse <= 0 || is_shadowed(seen_u, inverse) || is_lost(seen_u, seen_v, inverse);
+            const bool dark = inverse <= 0 || (edges_ && occlusion_.hides(seen_u, inverse)) ||
+                              (holes_ && grazing_.loses(seen_u, seen_v, inverse,
+                                                        here_.bits[static_cast<std::size_t>(seen_u)]));
             inverse_[i] = dark ? 0 : inverse;
         }
         for (std::size_t i = 0; i < width; ++i) {
@@ -172,69 +151,82 @@ class DepthReader {
         return other ? std::pair{u + du, v + dv} : std::pair{u, v};
     }
 
-    /// Notes what the projector reaches of this row: per projector column (with a margin) the nearest
-    /// surface.
-    void light_up(int v) {
-        std::fill(projector_.begin(), projector_.end(), 0.0f);
-        const float* inverse_depth = view_.inverse_depth.row(v);
-        for (int u = 0; u < view_.camera.width; ++u) {
-            const std::size_t column = projector_column(u, inverse_depth[u]);
-            projector_[column] = std::max(projector_[column], inverse_depth[u]);
-            projector_[column + 1] = std::max(projector_[column + 1], inverse_depth[u]);
-        }
-    }
-    std::size_t projector_column(int u, float inverse) const {
-        const float x = static_cast<float>(u + view_.camera.width) - disparity_at_1m_ * inverse;
-        return static_cast<std::size_t>(std::clamp(x, 0.0f, static_cast<float>(2 * view_.camera.width)));
-    }
-    bool is_shadowed(int u, float inverse) const {
-        constexpr float kNearer = 1.04f, kMargin = 0.01f;
-        return projector_[projector_column(u, inverse)] > kNearer * inverse + kMargin;
-    }
-
-    /// Readings at grazing angles are lost, in patches.
-    bool is_lost(int u, int v, float inverse) const {
-        const PinholeCamera& c = view_.camera;
-        const float x = (static_cast<float>(u) - static_cast<float>(c.cx)) / static_cast<float>(c.fx);
-        const float y = (static_cast<float>(v) - static_cast<float>(c.cy)) / static_cast<float>(c.fy);
-        const float distance = distance_of_[static_cast<std::size_t>(view_.rectangle(u, v))] * inverse;
-        const float squared_length = x * x + y * y + 1;
-        if (distance * distance >= cos_from_ * cos_from_ * squared_length) return false;
-        const float cosine = distance / std::sqrt(squared_length);
-        const float lost = (cos_from_ - cosine) / (cos_from_ - cos_to_);
-        const double patch =
-            uniform(mix(seed_ + 1, static_cast<std::uint64_t>(v / 4), static_cast<std::uint64_t>(u / 4)));
-        return 0.5 * (patch + uniform(mix(here_.bits[static_cast<std::size_t>(u)]))) < lost;
-    }
-
     const View& view_;
     unsigned jitter_limit_;  // of 256
+    bool edges_, holes_;
     const GaussianTable& gaussian_;
     std::uint64_t seed_;
     RawScale to_raw_;
     Measurement measurement_;
-    float disparity_at_1m_, cos_from_, cos_to_;
+    Occlusion occlusion_;
+    Grazing grazing_;
     std::vector<int> surface_of_;
-    std::vector<float> distance_of_;  // from the camera to each rectangle's plane
-    std::vector<float> projector_, inverse_, noise_, depth_;
+    std::vector<float> inverse_, noise_, depth_;
     std::vector<std::uint8_t> at_edge_;
     RandomRow here_, below_;
 };
 
 }  // namespace
 
+namespace {
+
+/// Exact depth within the range.
+DepthImage exact_depth(const View& view, const DepthSensorOptions& options) {
+    DepthImage depth(view.camera.width, view.camera.height);
+    const RawScale to_raw(options);
+    for (int v = 0; v < depth.height; ++v) {
+        for (int u = 0; u < depth.width; ++u) depth(u, v) = to_raw(view.depth(u, v));
+    }
+    return depth;
+}
+
+/// Share of a sensor's light that a pane throws away, there and back, by Fresnel's law for glass of index 1.5
+/// (Schlick's approximation), at the cosine of its angle to the normal.
+double lost_at_pane(double cosine) {
+    const double once = 0.04 + 0.96 * std::pow(1 - cosine, 5);
+    return 1 - std::pow(1 - once, 4);
+}
+
+/// Takes out what gives no light back: black surfaces, and in patches what is behind a pane that is looked
+/// through aslant.
+void take_out(const World& world, const View& view, bool with_panes, std::uint64_t seed, DepthImage& depth) {
+    const auto is_black = [&](std::int16_t i) {
+        return i >= 0 && world.rectangles[static_cast<std::size_t>(i)].material == Material::kBlack;
+    };
+    const Eigen::Matrix3d camera_from_world = view.world_from_camera.linear().transpose();
+    for (int v = 0; v < depth.height; ++v) {
+        for (int u = 0; u < depth.width; ++u) {
+            if (is_black(view.rectangle(u, v))) depth(u, v) = 0;
+            if (view.mirror.empty()) continue;
+            if (is_black(view.mirrored(u, v))) depth(u, v) = 0;
+            const std::int16_t pane = view.pane(u, v);
+            if (pane < 0 || !with_panes) continue;
+            const auto surface = world.rectangles[static_cast<std::size_t>(pane)].surface;
+            const Eigen::Vector3d normal =
+                camera_from_world * world.surfaces[static_cast<std::size_t>(surface)].plane.normal;
+            const double cosine = std::abs(normal.dot(view.camera.unproject(u, v, 1).normalized()));
+            const std::uint64_t patch =
+                mix(seed + 2, static_cast<std::uint64_t>(v / 8), static_cast<std::uint64_t>(u / 8));
+            if (uniform(patch) < lost_at_pane(cosine)) depth(u, v) = 0;
+        }
+    }
+}
+
+}  // namespace
+
 DepthImage sense_depth(const World& world, const View& view, const DepthSensorOptions& options,
                        const GaussianTable& gaussian, std::uint64_t seed) {
-    DepthImage depth(view.camera.width, view.camera.height);
+    DepthImage depth;
     if (!options.noise) {
-        const RawScale to_raw(options);
-        for (int v = 0; v < depth.height; ++v) {
-            for (int u = 0; u < depth.width; ++u) depth(u, v) = to_raw(view.depth(u, v));
-        }
-        return depth;
+        depth = exact_depth(view, options);
+    } else if (options.principle == Principle::kStructuredLight) {
+        depth = DepthImage(view.camera.width, view.camera.height);
+        DepthReader reader(world, view, options, gaussian, seed);
+        for (int v = 0; v < depth.height; ++v) reader.read_row(v, depth.row(v));
+    } else {
+        depth = sense_otherwise(world, view, options, gaussian, seed);
     }
-    DepthReader reader(world, view, options, gaussian, seed);
-    for (int v = 0; v < depth.height; ++v) reader.read_row(v, depth.row(v));
+    take_out(world, view, options.noise && options.holes, seed, depth);
     return depth;
 }
 

@@ -1,15 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a structured-light sensor makes of an exact view.
+// What a depth sensor and a colour camera make of a view.
 #pragma once
 
 #include "simulator/random.hpp"
 #include "simulator/renderer.hpp"
+#include "simulator/sensor_profile.hpp"
 
 namespace planemap::simulator {
 
-/// The Kinect's depth camera (Khoshelham and Elberink 2012; Nguyen et al. 2012).
+/// A depth camera; the Kinect's, if nothing is said (Khoshelham and Elberink 2012; Nguyen et al. 2012).
 struct DepthSensorOptions {
-    bool noise = true;                ///< false: exact depth within the range, rounded to units
+    bool noise = true;  ///< false: exact depth within the range, rounded to units; edges and holes go with it
+    Principle principle = Principle::kStructuredLight;
+    bool edges = true;  ///< jitter and shadow of structured light, flying pixels of time of flight, bleeding
+                        ///< and occlusion of stereo, smearing of a lidar
+    bool holes = true;  ///< at grazing angles, behind panes that are looked through aslant, and, of stereo,
+                        ///< on bare walls
     double units_per_metre = 1000;    ///< of the raw depth
     double min_m = 0.5, max_m = 4.0;  ///< range; nothing outside
     DepthNoise sigma;                 ///< standard deviation of depth, quantisation included
@@ -23,7 +29,7 @@ struct DepthSensorOptions {
     void validate() const;
 };
 
-/// Raw depth of a view. Depends on view, options and seed alone.
+/// Raw depth of a view; black surfaces have none. Depends on view, options and seed alone.
 DepthImage sense_depth(const World& world, const View& view, const DepthSensorOptions& options,
                        const GaussianTable& gaussian, std::uint64_t seed);
 

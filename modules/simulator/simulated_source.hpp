@@ -1,56 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <filesystem>
-
 #include "core/frame_range.hpp"
 #include "core/frame_source.hpp"
-#include "core/option_list.hpp"
 #include "core/trajectory.hpp"
+#include "simulator/depth_bias.hpp"
+#include "simulator/lens.hpp"
 #include "simulator/path.hpp"
-#include "simulator/sensor_model.hpp"
+#include "simulator/simulator_options.hpp"
 
 namespace planemap::simulator {
-
-/// What is simulated; options_of() says what each is.
-struct SimulatorOptions {
-    std::string world = "office";  ///< see world_names()
-    int frames = 0;
-    std::uint64_t seed = 1;
-    double rate_hz = 30;
-    int width = 640, height = 480;
-    bool noise = true;
-    bool registered = true;
-    double depth_units_per_metre = 1000;
-    double depth_min_m = 0.5, depth_max_m = 4.0;
-    double color_noise = 2.5;
-    int blur_samples = 1;
-    double shutter_s = 0.015;
-    double color_jitter_s = 0;
-    double exposure_drift = 0;
-    double light = 1;
-    double speed_m_s = 0.5;
-    double turn_deg_s = 45;
-    int visits = 0;
-    std::string trajectory;
-
-    /// Throws std::invalid_argument that names every bad field.
-    void validate() const;
-};
-
-/// By the keys of a name, "sim:WORLD?key=value&..."; all but the world. Refers to `options`, which must
-/// outlive it.
-OptionList options_of(SimulatorOptions& options);
-
-/// The worlds there are.
-std::vector<std::string> world_names();
-
-/// For --help: the worlds, a line each, and the parameters that names take.
-std::string simulator_help();
-
-/// Reads "sim:WORLD?key=value&...". Throws std::invalid_argument for an unknown world or key (listing what
-/// there is), a value that is not a number, or one out of range.
-SimulatorOptions parse_simulator_name(const std::string& name);
 
 /// Frames of a simulated sensor in a simulated world, with the exact truth. Every frame depends on the
 /// options and its index alone.
@@ -71,35 +30,47 @@ class SimulatedSource : public FrameSource {
     std::int64_t color_utime(std::size_t i) const;  ///< of its colour, microseconds
     /// Exact pose of the colour camera at any time. World frame: z up.
     Pose world_from_color(std::int64_t time_us) const { return pose_at(path_, time_us); }
-    /// Exact pose of the depth camera at any time; the colour camera's when registered.
+    /// Exact pose of the depth camera at any time; the colour camera's when registered without an error.
     Pose world_from_depth(std::int64_t time_us) const;
-    /// What the depth camera sees of frame i without noise or range.
+    /// What the depth camera sees of frame i without noise, range, bias or lens; `camera` is the true one.
     View depth_view(std::size_t i) const;
+    /// What the depth camera would read of frame i without noise and range: with its lens, its bias and
+    /// light that comes over second surfaces.
+    View biased_view(std::size_t i) const;
 
+    /// The world at rest: indices and names; where its bodies are at a time is in world_at().
     const World& world() const { return world_; }
+    World world_at(std::int64_t time_us) const { return world_.at(seconds_of(time_us)); }
+    /// Seconds after the world's change.
+    double seconds_of(std::int64_t time_us) const;
+    const SimulatorOptions& options() const { return options_; }
+    /// The cameras as they are, where camera() is what is said of them.
+    const TrueCameras& true_cameras() const { return true_; }
+    /// The specimen's bias; none: it has none.
+    const std::optional<DepthBias>& bias() const { return bias_; }
+    /// The hand that carries the camera along world().tour.
+    HandOptions hand() const;
     /// The colour camera's exact poses at the times of the selected frames, in order.
     Trajectory ground_truth() const;
 
   private:
     void walk();
     void follow_trajectory();
-    RgbImage color(std::size_t i, const View& depth_view) const;
+    RgbImage color(std::size_t i, const World& now, const View& depth_view) const;
+    /// world() where nothing moves, else world_at(), which is put into `moved`.
+    const World& world_then(std::int64_t time_us, World& moved) const;
+    void distort(const World& now, View& view) const;
     double exposure_at(std::int64_t time_us) const;
 
     SimulatorOptions options_;
     World world_;
     CameraInfo camera_;
+    TrueCameras true_;
+    std::optional<DepthBias> bias_;
     DepthSensorOptions depth_options_;
     GaussianTable gaussian_;
     Trajectory path_;
     std::size_t first_ = 0, frame_count_ = 0, next_ = 0;  ///< frame_count_: one after the last
 };
-
-/// Writes the exact planes as JSON: {"world": name, "planes": [{"id", "name", "normal": [x, y, z], "d",
-/// "area", "rectangles": [[4 corners]...]}]}; world frame (z up), metres, n.p + d = 0, normals towards the
-/// visible side, corners counter-clockwise about the normal. Pictures are left out: they cover other
-/// rectangles of their plane. `log` is the name of the log beside the file that it tells the truth of, and is
-/// added as "log"; empty: none. Throws std::runtime_error naming the file.
-void write_planes_truth(const std::filesystem::path& file, const World& world, const std::string& log = {});
 
 }  // namespace planemap::simulator

@@ -22,9 +22,38 @@ Vector3d Rectangle::nearest(const Vector3d& p) const {
 double World::clearance(const Vector3d& p) const {
     double least = std::numeric_limits<double>::infinity();
     for (const Rectangle& rectangle : rectangles) {
+        if (rectangle.absent) continue;
         least = std::min(least, (rectangle.nearest(p) - p).norm());
     }
     return least;
+}
+
+World World::at(double seconds) const {
+    World then = *this;
+    if (bodies.empty()) return then;
+    std::vector<Pose> world_from_rest;
+    for (const Body& body : bodies) world_from_rest.push_back(body.pose_at(seconds));
+    std::vector<int> body_of(surfaces.size(), -1);
+    for (Rectangle& rectangle : then.rectangles) {
+        if (rectangle.body < 0) continue;
+        const auto body = static_cast<std::size_t>(rectangle.body);
+        body_of[static_cast<std::size_t>(rectangle.surface)] = rectangle.body;
+        const Pose& moved = world_from_rest[body];
+        rectangle.absent = !bodies[body].is_there(seconds);
+        rectangle.centre = moved * rectangle.centre;
+        rectangle.half_u = moved.linear() * rectangle.half_u;
+        rectangle.half_v = moved.linear() * rectangle.half_v;
+    }
+    for (std::size_t i = 0; i < surfaces.size(); ++i) {
+        if (body_of[i] < 0) continue;
+        then.surfaces[i].plane = world_from_rest[static_cast<std::size_t>(body_of[i])] * surfaces[i].plane;
+    }
+    return then;
+}
+
+void WorldBuilder::begin_body(Body body) {
+    body_ = static_cast<int>(world_.bodies.size());
+    world_.bodies.push_back(std::move(body));
 }
 
 int WorldBuilder::surface_of(const std::string& name, const Plane& plane) {
@@ -43,7 +72,8 @@ int WorldBuilder::surface_of(const std::string& name, const Plane& plane) {
 
 int WorldBuilder::add_texture(const Look& look, double width, double height) {
     const auto index = world_.textures.size();
-    world_.textures.push_back(make_texture(look, width, height, mix(seed_, index), texel_scale_));
+    world_.textures.push_back(
+        std::make_shared<const Texture>(make_texture(look, width, height, mix(seed_, index), texel_scale_)));
     return static_cast<int>(index);
 }
 
@@ -72,6 +102,8 @@ void WorldBuilder::add_panel(const std::string& name, const Vector3d& corner, co
                 Rectangle part;
                 part.surface = surface;
                 part.texture = texture;
+                part.material = material_;
+                part.body = body_;
                 part.half_u = 0.5 * (*next - *left) * right;
                 part.half_v = 0.5 * (gap_top - top) * down;
                 part.centre = corner + middle * right + 0.5 * (top + gap_top) * down;
@@ -88,6 +120,8 @@ void WorldBuilder::add_picture(double left, double top, double width, double hei
     Rectangle picture;
     picture.surface = world_.rectangles.back().surface;
     picture.picture = true;
+    picture.material = world_.rectangles.back().material;
+    picture.body = world_.rectangles.back().body;
     picture.texture = add_texture(look, width, height);
     picture.half_u = 0.5 * width * right_;
     picture.half_v = 0.5 * height * down_;
@@ -97,6 +131,8 @@ void WorldBuilder::add_picture(double left, double top, double width, double hei
 
 void WorldBuilder::add_world(const World& other, const Vector3d& offset, const std::string& prefix) {
     const int first_texture = static_cast<int>(world_.textures.size());
+    const int first_body = static_cast<int>(world_.bodies.size());
+    world_.bodies.insert(world_.bodies.end(), other.bodies.begin(), other.bodies.end());
     const auto before = static_cast<std::ptrdiff_t>(world_.surfaces.size());
     world_.textures.insert(world_.textures.end(), other.textures.begin(), other.textures.end());
     std::vector<int> surface_here;
@@ -113,6 +149,7 @@ void WorldBuilder::add_world(const World& other, const Vector3d& offset, const s
     for (Rectangle rectangle : other.rectangles) {
         rectangle.surface = surface_here[static_cast<std::size_t>(rectangle.surface)];
         rectangle.texture += first_texture;
+        if (rectangle.body >= 0) rectangle.body += first_body;
         rectangle.centre += offset;
         world_.rectangles.push_back(rectangle);
     }

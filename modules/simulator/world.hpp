@@ -4,11 +4,13 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "core/geometry/plane.hpp"
+#include "simulator/body.hpp"
 #include "simulator/texture.hpp"
 
 namespace planemap::simulator {
@@ -19,6 +21,14 @@ struct Surface {
     Plane plane;  ///< world frame; the normal points to the side that can be seen
 };
 
+/// What light does at a surface, and so what a depth sensor reads there.
+enum class Material {
+    kMatt,    ///< scatters it: its own depth
+    kBlack,   ///< swallows a sensor's light: no reading; an eye sees its texture
+    kMirror,  ///< throws it back: the depth of what is mirrored, along the ray beyond the mirror
+    kGlass,   ///< lets it through: the depth of what is behind, or nothing
+};
+
 /// A textured rectangle, seen from the side its surface's normal points to.
 struct Rectangle {
     int surface = -1;        ///< index of its surface
@@ -27,6 +37,9 @@ struct Rectangle {
     Eigen::Vector3d half_u;  ///< from the centre to the middle of the right edge, as seen from the front
     Eigen::Vector3d half_v;  ///< from the centre to the middle of the lower edge; perpendicular to half_u
     bool picture = false;    ///< covers another rectangle of its surface
+    Material material = Material::kMatt;
+    int body = -1;        ///< index of the body that it is part of; -1: of none, it is always there
+    bool absent = false;  ///< not there at this time, see World::at()
     /// Texture coordinates of the upper left and the lower right corner; (0, 0) and (1, 1) show the whole.
     Eigen::Vector2d texture_from{0, 0}, texture_to{1, 1};
 
@@ -54,16 +67,23 @@ struct World {
     std::string name;
     std::vector<Surface> surfaces;
     std::vector<Rectangle> rectangles;  ///< of one surface, a later one covers an earlier one
-    std::vector<Texture> textures;
+    std::vector<std::shared_ptr<const Texture>> textures;  ///< shared by the worlds of all times
+    std::vector<Body> bodies;  ///< what moves, comes or goes; a surface is of one body or of none
     std::vector<Lamp> lamps;
     std::vector<Waypoint> tour;  ///< a closed walk; about a step apart
+    double pace = 1;             ///< of the walk, as a share of the hand's speed and turning rate
+    bool whole_tour = false;     ///< a walk without a given length goes once around
     /// Where a walk in random order stops, see wander(); the straight way between any two is free.
     std::vector<Waypoint> places;
     /// The free space that a hand-held trajectory from elsewhere is put into: a box, world frame, metres.
     Eigen::Vector3d free_from = Eigen::Vector3d::Zero(), free_to = Eigen::Vector3d::Zero();
 
-    /// Distance from p to the nearest rectangle, metres.
+    /// Distance from p to the nearest rectangle that is there, metres.
     double clearance(const Eigen::Vector3d& p) const;
+
+    /// The world `seconds` after the change (before: negative): each body where it is then, the rectangles of
+    /// those that are not there marked `absent`. Indices stay.
+    World at(double seconds) const;
 };
 
 /// A hole in a panel, metres from its upper left corner.
@@ -109,6 +129,14 @@ class WorldBuilder {
     void add_box(const std::string& name, const Place& place, const Size& size, const Look& look,
                  const Look& front, const Hidden& hidden);
 
+    /// What is added from here on is part of this body, in its place of rest (Pose::Identity()), until
+    /// end_body().
+    void begin_body(Body body);
+    void end_body() { body_ = -1; }
+
+    /// What is added from here on is made of this.
+    void use(Material material) { material_ = material; }
+
     /// All that is in another world, moved by `offset`: its surfaces under their names with `prefix` before
     /// them, or as parts of a surface that is on the same plane; its textures as they are, its lamps.
     void add_world(const World& other, const Eigen::Vector3d& offset, const std::string& prefix);
@@ -122,6 +150,8 @@ class WorldBuilder {
     World world_;
     std::uint64_t seed_;
     double texel_scale_;
+    int body_ = -1;
+    Material material_ = Material::kMatt;
     Eigen::Vector3d corner_ = Eigen::Vector3d::Zero(), right_ = Eigen::Vector3d::UnitX(),
                     down_ = Eigen::Vector3d::UnitY();  // of the last panel
 };
@@ -139,6 +169,20 @@ World make_twins(std::uint64_t seed, double texel_scale = 1);
 
 /// A hall; its tour passes 1.3 m before a wall of which 6 m are bare paint, and nothing else is in view.
 World make_wall(std::uint64_t seed, double texel_scale = 1);
+
+/// The office with a mirror, a pane of glass and a black cupboard.
+World make_glass(std::uint64_t seed, double texel_scale = 1);
+
+/// The office, where a camera looks on while one thing changes: a box appears, vanishes, or moves by 35 cm;
+/// the door, closed before, opens; a person walks in, stands and leaves.
+World make_appearing(std::uint64_t seed, double texel_scale = 1);
+World make_vanishing(std::uint64_t seed, double texel_scale = 1);
+World make_moved(std::uint64_t seed, double texel_scale = 1);
+World make_door(std::uint64_t seed, double texel_scale = 1);
+World make_walker(std::uint64_t seed, double texel_scale = 1);
+
+/// Twenty furnished rooms on both sides of a corridor of 46 m; the tour enters one after another.
+World make_rooms(std::uint64_t seed, double texel_scale = 1);
 
 /// Thousands of small boxes any way up around the camera, 4 to 12 cm wide: texture, and no plane.
 World make_clutter(std::uint64_t seed, double texel_scale = 1);

@@ -9,6 +9,7 @@
 
 #include "core/files.hpp"
 #include "core/registration.hpp"
+#include "simulator/planes_truth.hpp"
 #include "temporary_folder.hpp"
 
 namespace planemap::simulator {
@@ -180,7 +181,7 @@ TEST(SimulatedSource, TruthIsWritten) {
         (truth[7].world_from_camera.matrix() - source.world_from_color(source.utime(7)).matrix()).norm(),
         1e-6);
 
-    write_planes_truth(folder.path() / "planes_truth.json", source.world());
+    write_planes_truth(folder.path() / "planes_truth.json", source);
     const auto document = nlohmann::json::parse(read_file(folder.path() / "planes_truth.json"));
     ASSERT_EQ(document["planes"].size(), source.world().surfaces.size());
     for (const auto& plane : document["planes"]) {

@@ -20,7 +20,9 @@ constexpr double kCoarse = 8;  // texels
 
 std::vector<World> all_worlds() {
     std::vector<World> worlds;
-    for (const auto make : {&make_office, &make_building, &make_twins, &make_wall, &make_clutter})
+    for (const auto make :
+         {&make_office, &make_building, &make_twins, &make_wall, &make_clutter, &make_glass, &make_appearing,
+          &make_vanishing, &make_moved, &make_door, &make_walker, &make_rooms})
         worlds.push_back(make(3, kCoarse));
     return worlds;
 }
@@ -62,7 +64,9 @@ TEST(Worlds, RoomsAreClosedAndClutterIsNot) {
         for (std::size_t i = 0; i < path.size(); i += path.size() / 12) {
             const View view = render_view(world, camera, path[i].world_from_camera);
             const auto& seen = view.rectangle.pixels;
-            const auto nothing = std::count(seen.begin(), seen.end(), std::int16_t{-1});
+            auto nothing = std::count(seen.begin(), seen.end(), std::int16_t{-1});
+            const auto& mirrors = view.mirror.pixels;
+            nothing -= std::count_if(mirrors.begin(), mirrors.end(), [](std::int16_t m) { return m >= 0; });
             if (world.name == "clutter") {
                 EXPECT_GT(nothing, 400);
                 EXPECT_LT(nothing, 3600);

@@ -82,10 +82,8 @@ std::int64_t frames_a_round(const std::string& simulator_name) {
     if (options.visits > 0 || !options.trajectory.empty())
         throw std::invalid_argument(simulator_name + ": --growth needs a walk that goes round");
     const simulator::SimulatedSource source(options);
-    simulator::HandOptions hand;
-    hand.speed_m_s = options.speed_m_s;
-    hand.turn_deg_s = options.turn_deg_s;
-    return std::lround(simulator::tour_duration(source.world().tour, hand, options.seed) * options.rate_hz);
+    return std::lround(simulator::tour_duration(source.world().tour, source.hand(), options.seed) *
+                       options.rate_hz);
 }
 
 Growth measure_growth(const std::string& simulator_name, std::int64_t frames,

@@ -121,11 +121,12 @@ Sequence open_simulated(const std::string& name, std::size_t frames) {
     const auto source =
         std::make_shared<const simulator::SimulatedSource>(simulator::parse_simulator_name(name));
     const auto load = [source](std::size_t index) {
-        const simulator::View view = source->depth_view(index);
+        const simulator::View view = source->biased_view(index);
         BenchFrame frame;
         frame.depth = source->frame(index).depth;
         frame.world_from_depth = view.world_from_camera;
-        frame.truth = truth_of_view(source->world(), view, frame.depth, source->camera());
+        frame.truth =
+            truth_of_view(source->world_at(source->utime(index)), view, frame.depth, source->camera());
         return frame;
     };
     return {name, source->camera(), evenly_spread(*source->size(), frames), load};

@@ -10,7 +10,7 @@
 #include "messages/channels.hpp"
 #include "sensor/log_frames.hpp"
 #include "sensor/sensor_shell.hpp"
-#include "simulator/simulated_source.hpp"
+#include "simulator/planes_truth.hpp"
 
 namespace planemap {
 
@@ -56,7 +56,7 @@ class SensorInput : public Input {
         return {
             {"groundtruth.txt", [=](const auto& file) { write_trajectory(file, simulated->ground_truth()); }},
             {"planes_truth.json",
-             [=](const auto& file) { simulator::write_planes_truth(file, simulated->world()); }}};
+             [=](const auto& file) { simulator::write_planes_truth(file, *simulated); }}};
     }
 
   private:

@@ -13,7 +13,7 @@
 #include "results/result_folder.hpp"
 #include "sensor/sensor_shell.hpp"
 #include "simulate/recording.hpp"
-#include "simulator/simulated_source.hpp"
+#include "simulator/planes_truth.hpp"
 
 namespace planemap {
 namespace {
@@ -74,8 +74,7 @@ Simulated make_results(const std::string& world, const sensor::SensorShellOption
     Simulated simulated;
     simulated.total = source->size().value_or(0);
     results.make({kTruth, [&](const auto& file) { write_trajectory(file, source->ground_truth()); }});
-    results.make(
-        {kPlanes, [&](const auto& file) { simulator::write_planes_truth(file, source->world(), log); }});
+    results.make({kPlanes, [&](const auto& file) { simulator::write_planes_truth(file, *source, log); }});
     messages::Bus bus("memq://");
     sensor::SensorShell sensor(bus, std::move(source), options);
     const auto show = [&](std::int64_t frames) {
@@ -127,7 +126,8 @@ int main(int argc, char** argv) {
         "planemap-simulate",
         "The simulator to an LCM log (OPENNI_FRAME with JPEG and zipped depth, "
         "PLANEMAP_CAMERA_INFO), with the exact poses\n"
-        "(groundtruth.txt, TUM format) and planes (planes_truth.json) beside it.\n"
+        "(groundtruth.txt, TUM format) and planes, with the times in which they are there "
+        "(planes_truth.json), beside it.\n"
         "Example: planemap-simulate --output office/office.lcmlog\n" +
             planemap::simulator::simulator_help());
     std::string world = "sim:office";
