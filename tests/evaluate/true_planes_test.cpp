@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "core/angle.hpp"
 
@@ -135,6 +137,42 @@ TEST(TruePlanes, AreKnownOfSimulatedWorldsOnly) {
     EXPECT_GT(some->size(), 3u);
     EXPECT_GT(more->size(), some->size());
     for (const TruePlane& plane : *more) EXPECT_GT(plane.visible.count(), 0u) << plane.name;
+}
+
+TEST(TruePlanes, AreThoseThatAreThereAtTheEnd) {
+    const auto planes_of = [](const std::string& world, const std::string& part) {
+        const auto all =
+            true_planes("sim:" + world + "?width=160&height=120&rate=5&frames=40&change=4", 0).value();
+        std::vector<TruePlane> some;
+        std::copy_if(all.begin(), all.end(), std::back_inserter(some),
+                     [&](const TruePlane& plane) { return plane.name.starts_with(part); });
+        EXPECT_GT(all.size(), 5u) << world;
+        return some;
+    };
+    EXPECT_EQ(planes_of("vanishing", "box").size(), 0u);
+    EXPECT_GE(planes_of("appearing", "box").size(), 2u);
+    EXPECT_EQ(planes_of("walker", "person").size(), 0u) << "on the way";
+
+    // Seen at both places; the one where it is counts, and no more of it than there is.
+    const auto moved = planes_of("moved", "box top"), appeared = planes_of("appearing", "box top");
+    ASSERT_EQ(moved.size(), 1u);
+    ASSERT_EQ(appeared.size(), 1u);
+    EXPECT_NEAR(moved[0].world_from_plane.translation().y() - appeared[0].world_from_plane.translation().y(),
+                0.35, 1e-9);
+    EXPECT_LT(moved[0].visible.area(), 0.56);
+
+    // Closed, its back is seen; open, its front.
+    EXPECT_EQ(planes_of("door", "door front").size(), 1u);
+    EXPECT_EQ(planes_of("door", "door back").size(), 0u);
+}
+
+TEST(TruePlanes, AreNotMirrorsGlassOrBlack) {
+    const auto planes = true_planes("sim:glass?width=160&height=120&rate=2&frames=60", 0).value();
+    EXPECT_GT(planes.size(), 20u);
+    for (const TruePlane& plane : planes) {
+        for (const char* name : {"mirror", "pane", "black"})
+            EXPECT_EQ(plane.name.find(name), std::string::npos) << plane.name;
+    }
 }
 
 }  // namespace

@@ -70,12 +70,48 @@ cv::Mat1i parts_of(const PlaneRaster& raster) {
     return parts;
 }
 
+/// The world as a map should hold it when a recording ends: without what is not there then, or moves.
+simulator::World world_at_end(const simulator::SimulatedSource& source, std::int64_t end_us) {
+    constexpr double kLeastStay_s = 1;
+    simulator::World world = source.world_at(end_us);
+    const double end_s = source.seconds_of(end_us);
+    for (simulator::Rectangle& rectangle : world.rectangles) {
+        if (rectangle.body < 0) continue;
+        const auto stays = world.bodies[static_cast<std::size_t>(rectangle.body)].stays(kLeastStay_s);
+        const bool stays_here = std::any_of(stays.begin(), stays.end(), [&](const auto& stay) {
+            return end_s >= stay.from_s && end_s < stay.until_s;
+        });
+        rectangle.absent = rectangle.absent || !stays_here;
+    }
+    return world;
+}
+
+/// Takes from a view of another time what is not at its place at the end.
+void leave_out_moved(const simulator::World& then, const simulator::World& at_end, simulator::View& view) {
+    constexpr double kSamePlace_m = 1e-6;
+    for (std::int16_t& index : view.rectangle.pixels) {
+        if (index < 0) continue;
+        const auto i = static_cast<std::size_t>(index);
+        const simulator::Rectangle &a = then.rectangles[i], &b = at_end.rectangles[i];
+        if (a.body < 0) continue;
+        const auto before = a.corners(), after = b.corners();
+        for (std::size_t corner = 0; corner < before.size() && index >= 0; ++corner) {
+            if ((before[corner] - after[corner]).norm() > kSamePlace_m) index = -1;
+        }
+    }
+}
+
 }  // namespace
 
 TruthCollector::TruthCollector(const simulator::World& world) {
     for (const simulator::Surface& surface : world.surfaces) surface_names_.push_back(surface.name);
     std::vector<std::vector<Eigen::Vector3d>> corners;  // of each group
     for (const simulator::Rectangle& rectangle : world.rectangles) {
+        surface_of_rectangle_.push_back(static_cast<std::int16_t>(rectangle.surface));
+        if (rectangle.absent || rectangle.material != simulator::Material::kMatt) {
+            group_of_rectangle_.push_back(-1);
+            continue;
+        }
         const Plane& plane = world.surfaces[static_cast<std::size_t>(rectangle.surface)].plane;
         const auto same = std::find_if(groups_.begin(), groups_.end(), [&](const Group& group) {
             return same_plane(group.plane, plane, rectangle.centre);
@@ -89,7 +125,6 @@ TruthCollector::TruthCollector(const simulator::World& world) {
             group.world_from_plane.linear() = plane_axes(plane.normal, rectangle.half_u);
             group.world_from_plane.translation() = plane.project(rectangle.centre);
         }
-        surface_of_rectangle_.push_back(static_cast<std::int16_t>(rectangle.surface));
         group_of_rectangle_.push_back(static_cast<std::int16_t>(index));
         for (const Eigen::Vector3d& corner : rectangle.corners()) corners[index].push_back(corner);
     }
@@ -204,9 +239,14 @@ std::optional<std::vector<TruePlane>> true_planes(const std::string& input, std:
     sight.max_angle_deg = simulator::DepthSensorOptions().grazing_from_deg;
     const auto all = static_cast<std::int64_t>(*source.size());
     const std::int64_t count = frames > 0 ? std::min(frames, all) : all;
-    TruthCollector truth(source.world());
-    for (std::int64_t i = 0; i < count; i += kEvery)
-        truth.add(source.depth_view(static_cast<std::size_t>(i)), sight);
+    const simulator::World at_end = world_at_end(source, source.utime(static_cast<std::size_t>(count - 1)));
+    TruthCollector truth(at_end);
+    for (std::int64_t i = 0; i < count; i += kEvery) {
+        const auto index = static_cast<std::size_t>(i);
+        simulator::View view = source.depth_view(index);
+        if (!at_end.bodies.empty()) leave_out_moved(source.world_at(source.utime(index)), at_end, view);
+        truth.add(view, sight);
+    }
     return truth.planes();
 }
 

@@ -21,7 +21,8 @@ struct Sight {
 /// deg, same side) are one plane where the boxes around their visible parts (along the sides of the first
 /// rectangle) lie within 0.5 m of each other, as the paper's merging rule has it; parts further apart are
 /// planes of their own. (In the simulator's worlds, parts of one plane in different rooms are further apart,
-/// or meet in a doorway.)
+/// or meet in a doorway.) What is absent from the world, and what no depth sensor reads as it is (mirrors,
+/// glass, black), is no plane.
 class TruthCollector {
   public:
     explicit TruthCollector(const simulator::World& world);
@@ -49,7 +50,8 @@ class TruthCollector {
 };
 
 /// The planes that a simulated sequence shows in every fifth of its first `frames` frames (0: all) within the
-/// sensor's range; nothing for other inputs.
+/// sensor's range, and that are there when these end: what has vanished, moved away or moves is not among
+/// them, and what has come is, where it was seen at its last place. Nothing for other inputs.
 std::optional<std::vector<TruePlane>> true_planes(const std::string& input, std::int64_t frames);
 
 }  // namespace planemap::evaluation
