@@ -193,6 +193,9 @@ void take_out(const World& world, const View& view, bool with_panes, std::uint64
     const auto is_black = [&](std::int16_t i) {
         return i >= 0 && world.rectangles[static_cast<std::size_t>(i)].material == Material::kBlack;
     };
+    const bool any_black = std::any_of(world.rectangles.begin(), world.rectangles.end(),
+                                       [](const Rectangle& r) { return r.material == Material::kBlack; });
+    if (!any_black && view.mirror.empty()) return;
     const Eigen::Matrix3d camera_from_world = view.world_from_camera.linear().transpose();
     for (int v = 0; v < depth.height; ++v) {
         for (int u = 0; u < depth.width; ++u) {
