@@ -27,6 +27,8 @@ LiveSource::LiveSource(Open open) : open_(std::move(open)), opened_(open_({})) {
 void LiveSource::close(const std::string& why) {
     trouble_ = name_ + ": " + why;
     if (const std::string ending = opened_->ending(); !ending.empty()) trouble_ += "; " + ending;
+    opened_->end_recording();
+    if (const std::string fault = new_fault(); !fault.empty()) trouble_ += "; " + fault;
     opened_.reset();
     patience_ = kFirstPatience;
     retry_at_ = Clock::now() + patience_;
@@ -46,6 +48,21 @@ void LiveSource::open_again() {
         patience_ = std::min(2 * patience_, kLastPatience);
         retry_at_ = Clock::now() + patience_;
     }
+}
+
+/// What failed beside the frames since it was asked last.
+std::string LiveSource::new_fault() {
+    if (!fault_.empty()) return {};
+    fault_ = opened_->fault();
+    return fault_;
+}
+
+std::string LiveSource::end() {
+    if (opened_) {
+        opened_->end_recording();
+        new_fault();
+    }
+    return fault_;
 }
 
 ReadResult LiveSource::next(SensorFrame& frame) {
@@ -73,6 +90,7 @@ ReadResult LiveSource::next(SensorFrame& frame) {
         return result;
     }
     result.status = ReadResult::Status::kFrame;
+    result.beside = new_fault();
     frame.utime = clock_.host_time(live->depth_us, live->arrival_us);
     frame.depth = std::move(live->depth);
     if (live->color.empty()) return result;

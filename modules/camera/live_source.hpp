@@ -34,6 +34,10 @@ class LiveCamera {
     virtual std::vector<std::string> notes() const = 0;
     /// What ends with this opening (a recording); empty for nothing.
     virtual std::string ending() const { return {}; }
+    /// Ends what is made beside the frames (a recording), before the camera itself ends.
+    virtual void end_recording() {}
+    /// What failed beside the frames, which go on: a line. Empty: nothing.
+    virtual std::string fault() const { return {}; }
     virtual bool is_unplugged() const = 0;
     virtual std::chrono::milliseconds silence() const = 0;  ///< how long no depth has come
     /// The next frame; nothing if none comes within `wait`. Adds what was lost.
@@ -57,12 +61,14 @@ class LiveSource : public FrameSource {
     ReadResult next(SensorFrame& frame) override;
     bool is_live() const override { return true; }
     std::vector<std::string> notes() const override { return notes_; }
+    std::string end() override;
 
   private:
     using Clock = std::chrono::steady_clock;
 
     void close(const std::string& why);
     void open_again();
+    std::string new_fault();
 
     Open open_;
     std::unique_ptr<LiveCamera> opened_;
@@ -71,6 +77,7 @@ class LiveSource : public FrameSource {
     std::vector<std::string> notes_;
     ClockSynchroniser clock_;
     std::string trouble_;  ///< why there is no camera now
+    std::string fault_;    ///< of what was made beside the frames, the first
     Clock::time_point retry_at_{};
     std::chrono::milliseconds patience_{0};
 };

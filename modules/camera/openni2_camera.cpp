@@ -89,16 +89,12 @@ OpenNi2Camera::OpenNi2Camera(const std::string& wanted, const CameraRequest& req
     verify(request);
     info_ = camera_info(name_, depth_, has_color() ? &color_ : nullptr, is_registered_, request, notes_);
     frames_.begin(period_us(), has_color());
-    if (!request.record.empty()) record(request.record);
+    if (!request.record.empty())
+        recording_ = std::make_unique<OniRecording>(request.record, depth_, has_color() ? &color_ : nullptr);
 }
 
 OpenNi2Camera::~OpenNi2Camera() {
-    if (recorder_.isValid()) {
-        recorder_.stop();
-        recorder_.destroy();
-        std::error_code failed;
-        std::filesystem::rename(recording_beside_, recording_, failed);
-    }
+    recording_.reset();
     for (openni::VideoStream* stream : {&depth_, &color_}) {
         if (!stream->isValid()) continue;
         stream->removeNewFrameListener(listener_of(*stream));
@@ -224,6 +220,7 @@ void OpenNi2Camera::wait_for_depth() {
 std::optional<LiveFrame> OpenNi2Camera::next(std::chrono::milliseconds wait, Losses& lost) {
     const auto pair = frames_.next(wait, lost);
     if (!pair) return std::nullopt;
+    if (recording_) recording_->watch();
     LiveFrame frame{
         pair->depth_us, pair->color_us, pair->depth.arrival_us, depth_image(pair->depth.image), {}};
     if (pair->color) frame.color = color_image(pair->color->image);
@@ -287,16 +284,17 @@ void OpenNi2Camera::verify(const CameraRequest& request) {
         note("does not take depth and colour at the same time; they are paired by their stamps");
 }
 
-void OpenNi2Camera::record(const std::filesystem::path& file) {
-    if (std::filesystem::exists(file))
-        throw std::runtime_error(file.string() + " is there already: give another --record, or remove it");
-    recording_ = file;
-    recording_beside_ = file.parent_path() / ("." + file.filename().string() + ".partial");
-    const bool works = recorder_.create(recording_beside_.c_str()) == openni::STATUS_OK &&
-                       recorder_.attach(depth_) == openni::STATUS_OK &&
-                       (!has_color() || recorder_.attach(color_, true) == openni::STATUS_OK) &&
-                       recorder_.start() == openni::STATUS_OK;
-    if (!works) throw std::runtime_error(file.string() + ": cannot be recorded: " + openni2_error());
+std::string OpenNi2Camera::ending() const {
+    if (!recording_ || !recording_->is_running()) return {};
+    return "the recording ends here: " + recording_->file().string();
+}
+
+void OpenNi2Camera::end_recording() {
+    if (recording_) recording_->end();
+}
+
+std::string OpenNi2Camera::fault() const {
+    return recording_ ? recording_->fault() : "";
 }
 
 std::string list_openni2_cameras() {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "camera/live_source.hpp"
+#include "camera/oni_recording.hpp"
 #include "camera/openni2_device.hpp"
 
 namespace planemap::camera {
@@ -29,9 +30,9 @@ class OpenNi2Camera : public LiveCamera {
     std::string name() const override { return name_; }
     std::string serial() const override { return serial_; }
     std::vector<std::string> notes() const override { return notes_; }
-    std::string ending() const override {
-        return recording_.empty() ? "" : "the recording ends here: " + recording_.string();
-    }
+    std::string ending() const override;
+    void end_recording() override;
+    std::string fault() const override;
     bool is_unplugged() const override { return unplugged_; }
     std::chrono::milliseconds silence() const override { return frames_.silence(); }
     std::optional<LiveFrame> next(std::chrono::milliseconds wait, Losses& lost) override;
@@ -42,7 +43,6 @@ class OpenNi2Camera : public LiveCamera {
 
     bool has_color() const { return color_.isValid(); }
     std::int64_t period_us() const;
-    void record(const std::filesystem::path& file);
     void find(const std::string& wanted);
     void open_depth(const CameraRequest& request);
     void open_color(const CameraRequest& request);
@@ -66,8 +66,7 @@ class OpenNi2Camera : public LiveCamera {
     std::unique_ptr<StreamListener> depth_listener_, color_listener_;  // one listener, one stream
     openni::Device device_;
     openni::VideoStream depth_, color_;
-    openni::Recorder recorder_;
-    std::filesystem::path recording_, recording_beside_;  ///< what it will be named, and what it is meanwhile
+    std::unique_ptr<OniRecording> recording_;  ///< ends before what it records; null: none
 };
 
 /// The cameras that OpenNI2 finds, with their modes: lines for people. Empty without any.

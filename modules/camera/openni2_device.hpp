@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a live OpenNI2 camera and a .oni file have in common. Of this module's headers the only one that
-// includes OpenNI2's.
+// What a live OpenNI2 camera and a .oni file have in common.
 #pragma once
 
 #include <OpenNI.h>

@@ -38,6 +38,7 @@ struct ReadResult {
     bool color_left_out = false;  ///< of a frame: its colour could not be used and is not in it
     /// What a live camera lost since its last result, by its reason: plural, without figures.
     std::map<std::string, std::int64_t> lost{};
+    std::string beside{};  ///< one line of what failed beside the frames, which go on: a recording; told once
     bool end_missing = false;  ///< of a frame: a file of it is cut short, but behind its last pixel
 };
 
@@ -59,6 +60,9 @@ class FrameSource {
     virtual std::vector<std::string> notes() const { return {}; }
     /// A line each of what the user should know at the end: what of the source was damaged or not read.
     virtual std::vector<std::string> complaints() const { return {}; }
+    /// Nothing more is read: ends what is made beside the frames (a recording). One line of what failed of
+    /// it, at any time; empty if nothing did.
+    virtual std::string end() { return {}; }
     /// How far it is read, 0 to 1, where size() is not known; nothing if that is not known either.
     virtual std::optional<double> progress() const { return std::nullopt; }
 };

@@ -53,12 +53,12 @@ ReadAhead::ReadAhead(std::shared_ptr<FrameSource> source)
     std::thread([state = state_] { state->read_all(); }).detach();
 }
 
-ReadAhead::~ReadAhead() {
+bool ReadAhead::stop() {
     constexpr std::chrono::milliseconds kPatience{500};
     std::unique_lock lock(state_->mutex);
     state_->stop = true;
     state_->changed.notify_all();
-    state_->changed.wait_for(lock, kPatience, [&] { return state_->done; });
+    return state_->changed.wait_for(lock, kPatience, [&] { return state_->done; });
 }
 
 std::optional<ReadAhead::Item> ReadAhead::take(std::chrono::milliseconds wait) {

@@ -20,15 +20,18 @@ class ReadAhead {
     };
 
     explicit ReadAhead(std::shared_ptr<FrameSource> source);
-    /// Waits half a second for a read that is under way; one that blocks for longer is left behind, with its
-    /// thread and the source, until it returns.
-    ~ReadAhead();
+    ~ReadAhead() { stop(); }
     ReadAhead(const ReadAhead&) = delete;
     ReadAhead& operator=(const ReadAhead&) = delete;
 
     /// The next item, in order; nothing if none comes within `wait`. After kEnd there is nothing more. Throws
     /// what FrameSource::next() threw.
     std::optional<Item> take(std::chrono::milliseconds wait);
+
+    /// Reads nothing more. Waits half a second for a read that is under way; one that blocks for longer is
+    /// left behind, with its thread and the source, until it returns. True if none was: the source is the
+    /// caller's alone.
+    bool stop();
 
   private:
     struct State;

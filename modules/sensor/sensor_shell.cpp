@@ -35,7 +35,10 @@ void SensorShellOptions::validate() const {
 }
 
 SensorShell::SensorShell(messages::Bus& bus, std::unique_ptr<FrameSource> source, SensorShellOptions options)
-    : bus_(bus), source_(std::move(source)), options_(options), last_camera_wall_us_(messages::now_us()) {
+    : bus_(bus),
+      source_(std::move(source)),
+      options_(std::move(options)),
+      last_camera_wall_us_(messages::now_us()) {
     options_.validate();
     for (const std::string& note : source_->notes()) spdlog::warn("{}", note);
     if (options_.live) ahead_ = std::make_unique<ReadAhead>(source_);
@@ -72,6 +75,7 @@ void SensorShell::count(const ReadResult& result) {
         status_.lost(what, count);
         camera_losses_[what] += count;
     }
+    if (!result.beside.empty()) status_.remark("beside", result.beside);
     show_trouble(result);
     if (result.status == ReadResult::Status::kNothing) return;
     status_.received();
@@ -200,9 +204,16 @@ void SensorShell::keep_position() {
     if (!file) status_.lost("notes of how far the input was played");
 }
 
+/// What failed of what the source made beside its frames; empty: nothing.
+std::string SensorShell::end_source() {
+    if (ahead_ && !ahead_->stop()) return {};
+    return source_->end();
+}
+
 void SensorShell::finish() {
     std::error_code ignored;
     if (ended_ && !options_.position.empty()) std::filesystem::remove(options_.position, ignored);
+    if (const std::string fault = end_source(); !fault.empty()) throw std::runtime_error(fault);
     if (!ended_) return;
     for (const std::string& complaint : source_->complaints()) spdlog::warn("{}", complaint);
     if (frames_ > 0) return;

@@ -44,7 +44,8 @@ class SensorShell : public messages::Shell {
     /// Reads the next frame, or publishes it if it is due; negative at the end of the source. Without a
     /// connection nothing is read: a recording goes on when there is one.
     int poll() override;
-    /// Throws std::runtime_error if the source came to its end without one frame that could be used.
+    /// Throws std::runtime_error if the source came to its end without one frame that could be used, or what
+    /// it made beside its frames (a recording) failed.
     void finish() override;
 
     const FrameSource& source() const { return *source_; }
@@ -73,6 +74,7 @@ class SensorShell : public messages::Shell {
     void keep_position();
     void on_status(const messages::RawMessage& message);
     bool next(ReadResult& result);
+    std::string end_source();
     bool jumps() const;
     void count(const ReadResult& result);
     void show_trouble(const ReadResult& result);

@@ -66,6 +66,7 @@ class SelectedFrames : public FrameSource {
     }
     bool is_live() const override { return source_->is_live(); }
     std::vector<std::string> notes() const override { return source_->notes(); }
+    std::string end() override { return source_->end(); }
     ReadResult next(SensorFrame& frame) override {
         for (;;) {
             if (range_.to && next_ >= *range_.to) {
@@ -97,6 +98,7 @@ class TimedFrames : public FrameSource {
     std::optional<std::size_t> size() const override { return std::nullopt; }
     bool is_live() const override { return true; }
     std::vector<std::string> notes() const override { return source_->notes(); }
+    std::string end() override { return source_->end(); }
     ReadResult next(SensorFrame& frame) override {
         if (Clock::now() < end_) return source_->next(frame);
         frame = {};

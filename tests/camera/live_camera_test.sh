@@ -88,6 +88,36 @@ timeout 20 "$bin/planemap-run" "$work/cut.oni" --output "$work/cut" >"$work/cut.
 [[ "$code" -eq 1 && "$(wc -l <"$work/cut.txt")" -eq 1 ]] && grep -q 'cut short at byte' "$work/cut.txt" ||
     fail "a truncated recording: code $code, $(cat "$work/cut.txt")"
 
+echo "== a recording that its disk does not take ends, and nothing else does"
+# recorded FILE FRAMES: the sensor went on to its end, said once at once and once at its end that the recording ends, and
+# what is recorded is whole.
+recorded() {
+    [[ "$code" -eq 1 && "$(grep -c 'warning.*the recording ends here' "$work/full.txt")" -eq 1 ]] &&
+        tail -n 1 "$work/full.txt" | grep -q 'planemap-sensor: .*the recording ends here.*is whole' ||
+        fail "a full disk: code $code: $(cat "$work/full.txt")"
+    grep -qE "stopped:.* ($2) out" "$work/full.txt" || fail "the frames did not go on: $(cat "$work/full.txt")"
+    timeout 20 "$bin/planemap-sensor" "$1" --speed 0 --lcm-url "file://$work/replay.lcmlog?mode=w" >"$work/replay.txt" 2>&1 ||
+        fail "what was recorded is not whole: $(cat "$work/replay.txt")"
+}
+record() {
+    # shellcheck disable=SC2086
+    timeout 60 "$bin/planemap-virtual-camera" "$world" -- planemap-sensor openni2 $size --duration "$2" --record "$1" \
+        --lcm-url 'udpm://239.255.76.67:7693?ttl=0' >"$work/full.txt" 2>&1
+}
+code=0
+(ulimit -f 500 && record "$work/limited.oni" 8) || code=$?
+recorded "$work/limited.oni" '1[0-9][0-9]|2[0-9][0-9]'
+mkdir "$work/disk"
+export bin work world size
+export -f record
+if unshare -rm mount -t tmpfs tmpfs "$work/disk" 2>/dev/null; then
+    code=0
+    unshare -rm bash -c 'mount -t tmpfs -o size=66m tmpfs "$work/disk" && {
+        record "$work/disk/a.oni" 4; code=$?; cp "$work/disk/a.oni" "$work/disk.oni"; exit "$code"; }' || code=$?
+    recorded "$work/disk.oni" '[4-9][0-9]|1[0-9][0-9]'
+    grep -q 'its disk is nearly full' "$work/full.txt" || fail "not told as a full disk: $(cat "$work/full.txt")"
+fi
+
 echo "== live map"
 # shellcheck disable=SC2086
 timeout 120 "$bin/planemap-virtual-camera" "$world" -- planemap-run openni2 $size --duration 3 --output "$work/live" \

@@ -81,6 +81,40 @@ TEST(LiveSource, AnotherCameraIsNotTakenForIt) {
     EXPECT_THAT(last, HasSubstr("came back as another camera"));
 }
 
+/// Records, which fails with the second frame; and once more at the end, which nobody need hear.
+class FakeRecordingCamera : public FakeCamera {
+  public:
+    FakeRecordingCamera() : FakeCamera(4, 320) {}
+    std::optional<LiveFrame> next(std::chrono::milliseconds wait, Losses& lost) override {
+        if (++asked_ == 2) fault_ = "a.oni: the recording ends here";
+        return FakeCamera::next(wait, lost);
+    }
+    void end_recording() override { fault_ += ", again"; }
+    std::string fault() const override { return fault_; }
+
+  private:
+    int asked_ = 0;
+    std::string fault_;
+};
+
+TEST(LiveSource, ARecordingThatFailsIsToldOnceAndAtTheEnd) {
+    LiveSource source([&](const std::string&) { return std::make_unique<FakeRecordingCamera>(); });
+    SensorFrame frame;
+    std::vector<std::string> beside;
+    for (int i = 0; i < 4; ++i) {
+        const ReadResult result = source.next(frame);
+        EXPECT_EQ(result.status, ReadResult::Status::kFrame);
+        beside.push_back(result.beside);
+    }
+    EXPECT_THAT(beside, testing::ElementsAre("", "a.oni: the recording ends here", "", ""));
+    EXPECT_EQ(source.end(), "a.oni: the recording ends here");
+}
+
+TEST(LiveSource, ARecordingThatCannotBeClosedIsTold) {
+    LiveSource source([&](const std::string&) { return std::make_unique<FakeRecordingCamera>(); });
+    EXPECT_EQ(source.end(), ", again");
+}
+
 TEST(LiveSource, ThatCannotBeOpenedSaysWhy) {
     EXPECT_THROW(LiveSource([](const std::string&) -> std::unique_ptr<LiveCamera> {
                      throw std::runtime_error("openni2: no camera is plugged in");
