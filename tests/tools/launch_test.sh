@@ -19,8 +19,8 @@ refused() {
         echo "launch_test: launch $* was not refused" >&2
         exit 1
     fi
-    grep -qF -- "$words" "$said" || {
-        echo "launch_test: launch $*: no '$words' in:" >&2
+    grep -qF -- "$words" "$said" && [[ "$(wc -l <"$said")" -eq 1 ]] || {
+        echo "launch_test: launch $*: not '$words' in one line:" >&2
         cat "$said" >&2
         exit 1
     }

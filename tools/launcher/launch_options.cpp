@@ -8,9 +8,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdlib>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include "sensor/source.hpp"
 
@@ -51,9 +53,34 @@ void check_folder(const std::filesystem::path& folder) {
         throw std::runtime_error("the folder " + there.string() + " cannot be written to");
 }
 
+/// Of what comes from there to its end; empty lines are none.
+std::string last_line(int file) {
+    std::string last, line;
+    char bytes[4096];
+    for (ssize_t n = 0; (n = ::read(file, bytes, sizeof(bytes))) > 0 || (n < 0 && errno == EINTR);) {
+        for (ssize_t i = 0; i < n; ++i) {
+            if (bytes[i] != '\n')
+                line += bytes[i];
+            else if (!line.empty())
+                last = std::exchange(line, {});
+        }
+    }
+    return line.empty() ? last : line;
+}
+
+/// Runs a program that only checks what it is given. Throws std::runtime_error that says what it said, if it
+/// does not like it.
+void check_by(const std::vector<std::string>& command) {
+    std::string said;
+    const int code = run_to_end(command, &said);
+    if (code == 0) return;
+    if (said.empty()) said = command.front() + " ended with code " + std::to_string(code);
+    throw std::runtime_error("nothing was started: " + said);
+}
+
 }  // namespace
 
-int run_to_end(const std::vector<std::string>& command) {
+int run_to_end(const std::vector<std::string>& command, std::string* last_said) {
     std::vector<char*> arguments;
     arguments.reserve(command.size() + 1);
     for (const std::string& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
@@ -62,6 +89,9 @@ int run_to_end(const std::vector<std::string>& command) {
     posix_spawn_file_actions_init(&files);
     posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
     posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+    int pipe[2] = {-1, -1};
+    if (last_said != nullptr && ::pipe2(pipe, O_CLOEXEC) != 0) return 127;
+    if (last_said != nullptr) posix_spawn_file_actions_adddup2(&files, pipe[1], STDERR_FILENO);
     pid_t pid = 0;
     posix_spawnattr_t attributes;  // signals that are blocked here are not there
     posix_spawnattr_init(&attributes);
@@ -72,6 +102,11 @@ int run_to_end(const std::vector<std::string>& command) {
     const int failed = ::posix_spawnp(&pid, arguments[0], &files, &attributes, arguments.data(), environ);
     posix_spawnattr_destroy(&attributes);
     posix_spawn_file_actions_destroy(&files);
+    if (last_said != nullptr) {
+        ::close(pipe[1]);
+        *last_said = last_line(pipe[0]);
+        ::close(pipe[0]);
+    }
     int status = 0;
     if (failed != 0 || ::waitpid(pid, &status, 0) != pid) return 127;
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
@@ -194,13 +229,13 @@ void LaunchOptions::check_programs() const {
 void LaunchOptions::check_modules() const {
     std::vector<std::string> sensor = {program("sensor").string(), "--check"};
     for (std::string& flag : own_flags("sensor")) sensor.push_back(std::move(flag));
-    if (run_to_end(sensor) != 0) throw std::runtime_error("nothing was started");
+    check_by(sensor);
     for (const auto& [module, more] : flags) {
         if (module == "sensor" || more.empty()) continue;
         std::vector<std::string> command = {program(module).string()};
         for (std::string& flag : own_flags(module)) command.push_back(std::move(flag));
         command.push_back("--dump-config");
-        if (run_to_end(command) != 0) throw std::runtime_error("nothing was started");
+        check_by(command);
     }
 }
 

@@ -50,7 +50,7 @@ struct LaunchOptions {
 };
 
 /// Runs a program to its end, its standard output thrown away; returns its exit code, 127 if there is none
-/// such.
-int run_to_end(const std::vector<std::string>& command);
+/// such. With `last_said`, its standard error is not shown, and its last line is put there.
+int run_to_end(const std::vector<std::string>& command, std::string* last_said = nullptr);
 
 }  // namespace planemap::launcher
