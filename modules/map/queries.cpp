@@ -195,7 +195,8 @@ std::optional<double> MapQueries::gap(int id_a, int id_b) const {
     if (a == b) return 0.0;
     double best = kInfinity;
     // A vertex of one and the other's area, or an edge of one that passes through the other.
-    for (const auto& [of, to] : {std::pair(a, b), std::pair(b, a)}) {
+    for (const auto& both : {std::pair(a, b), std::pair(b, a)}) {
+        const Entry *of = both.first, *to = both.second;
         const Pose to_from_of = to->plane_from_world * of->world_from_plane;
         for_each_edge(of->outline, [&](const Eigen::Vector2d& v, const Eigen::Vector2d& w) {
             const Eigen::Vector3d p = to_from_of * on_plane(v), q = to_from_of * on_plane(w);

@@ -90,7 +90,7 @@ void CellGrid::label(Place cell, const BorderBand& band, std::span<const Candida
 
 void CellGrid::fill(Place cell, std::uint16_t label) {
     for (int row = 0; row < kCellPx; ++row)
-        std::fill_n(labels_.row(cell.y * kCellPx + row) + cell.x * kCellPx, kCellPx, label);
+        std::fill_n(labels_.row(cell.y * kCellPx + row) + std::ptrdiff_t{cell.x} * kCellPx, kCellPx, label);
 }
 
 void CellGrid::sum(std::span<const Part> parts, PointSums* sums) const {
@@ -108,7 +108,7 @@ void CellGrid::sum(std::span<const Part> parts, PointSums* sums) const {
 
 void CellGrid::rename(Place cell, std::span<const std::uint16_t> new_label) {
     for (int row = 0; row < kCellPx; ++row) {
-        std::uint16_t* pixels = labels_.row(cell.y * kCellPx + row) + cell.x * kCellPx;
+        std::uint16_t* pixels = labels_.row(cell.y * kCellPx + row) + std::ptrdiff_t{cell.x} * kCellPx;
         for (int i = 0; i < kCellPx; ++i) pixels[i] = new_label[pixels[i]];
     }
 }

@@ -268,7 +268,7 @@ void fit(const CellRules& rules, const CellGroup& group, Cell* cells, PointSums*
     Collector collector;
     bool empty = true;
     for (int k = 0; k < 8; ++k) {
-        const std::uint16_t* depth = group.depth + k * kCellPx;
+        const std::uint16_t* depth = group.depth + std::ptrdiff_t{k} * kCellPx;
         Short8 least = load<Short8>(depth), most = least;
         for (int row = 1; row < kCellPx; ++row) {
             const Short8 raw = load<Short8>(depth + row * group.stride);
