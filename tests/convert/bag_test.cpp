@@ -7,6 +7,7 @@
 
 #include "convert/bag_source.hpp"
 #include "convert/bag_writer.hpp"
+#include "convert/ros_bytes.hpp"
 #include "core/files.hpp"
 #include "messages/image_codec.hpp"
 #include "sensor/png.hpp"
@@ -19,51 +20,6 @@ using testing::HasSubstr;
 
 constexpr std::uint32_t kWidth = 32, kHeight = 24, kColorWidth = 64, kColorHeight = 48;
 
-/// A message's bytes as ROS serialises them.
-class Message {
-  public:
-    Message() = default;
-    Message(std::string type) : type_(std::move(type)) {}
-    template <typename T>
-    Message& number(T value) {
-        const auto* bytes = reinterpret_cast<const std::uint8_t*>(&value);
-        bytes_.insert(bytes_.end(), bytes, bytes + sizeof(T));
-        return *this;
-    }
-    Message& numbers(const std::vector<double>& values) {
-        for (const double value : values) number(value);
-        return *this;
-    }
-    Message& data(const std::vector<std::uint8_t>& bytes) {
-        number(static_cast<std::uint32_t>(bytes.size()));
-        bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
-        return *this;
-    }
-    Message& text(const std::string& text) { return data({text.begin(), text.end()}); }
-    Message& header(std::int64_t utime, const std::string& frame) {
-        number(std::uint32_t{7}).number(static_cast<std::uint32_t>(utime / 1000000));
-        return number(static_cast<std::uint32_t>(utime % 1000000 * 1000)).text(frame);
-    }
-    const std::string& type() const { return type_; }
-    const std::vector<std::uint8_t>& bytes() const { return bytes_; }
-
-  private:
-    std::string type_;
-    std::vector<std::uint8_t> bytes_;
-};
-
-Message image(std::int64_t utime, const std::string& frame, std::uint32_t width, std::uint32_t height,
-              const std::string& encoding, std::uint32_t step, const std::vector<std::uint8_t>& data) {
-    return Message("sensor_msgs/Image")
-        .header(utime, frame)
-        .number(height)
-        .number(width)
-        .text(encoding)
-        .number(std::uint8_t{0})
-        .number(step)
-        .data(data);
-}
-
 std::vector<std::uint8_t> depth_bytes() {
     const std::vector<std::uint16_t> pixels(kWidth * kHeight, 1500);
     std::vector<std::uint8_t> bytes(2 * pixels.size());
@@ -71,41 +27,34 @@ std::vector<std::uint8_t> depth_bytes() {
     return bytes;
 }
 
-Message depth_image(std::int64_t utime, const std::string& frame, const std::string& encoding = "16UC1") {
+RosBytes depth_image(std::int64_t utime, const std::string& frame, const std::string& encoding = "16UC1") {
     return image(utime, frame, kWidth, kHeight, encoding, 2 * kWidth, depth_bytes());
 }
 
-Message color_image(std::int64_t utime, const std::string& frame, std::uint32_t width = kColorWidth) {
+RosBytes color_image(std::int64_t utime, const std::string& frame, std::uint32_t width = kColorWidth) {
     std::vector<std::uint8_t> data;
     for (std::uint32_t i = 0; i < kColorWidth * kColorHeight; ++i) data.insert(data.end(), {30, 20, 10});
     return image(utime, frame, width, kColorHeight, "bgr8", 3 * kColorWidth, data);
 }
 
-Message compressed(std::int64_t utime, const std::string& format, const std::vector<std::uint8_t>& data) {
-    return Message("sensor_msgs/CompressedImage").header(utime, "optical").text(format).data(data);
-}
-
-Message camera_info(std::uint32_t width, std::uint32_t height, double f) {
-    Message info("sensor_msgs/CameraInfo");
-    info.header(1, "optical").number(height).number(width).text("plumb_bob").number(std::uint32_t{0});
-    info.numbers({f, 0, width / 2.0, 0, f, height / 2.0, 0, 0, 1});
-    return info.numbers(std::vector<double>(9)).numbers(std::vector<double>(12));
+RosBytes compressed(std::int64_t utime, const std::string& format, const std::vector<std::uint8_t>& data) {
+    return RosBytes("sensor_msgs/CompressedImage").header(utime, "optical").text(format).data(data);
 }
 
 /// A translation along x.
-Message transform(double x) {
-    return Message("geometry_msgs/Transform").numbers({x, 0, 0, 0, 0, 0, 1});
+RosBytes transform(double x) {
+    return RosBytes("geometry_msgs/Transform").numbers({x, 0, 0, 0, 0, 0, 1});
 }
 
-Message transforms(const std::vector<std::pair<std::string, double>>& children) {
-    Message all("tf2_msgs/TFMessage");
+RosBytes transforms(const std::vector<std::pair<std::string, double>>& children) {
+    RosBytes all("tf2_msgs/TFMessage");
     all.number(static_cast<std::uint32_t>(children.size()));
     for (const auto& [child, x] : children) all.header(1, "link").text(child).numbers({x, 0, 0, 0, 0, 0, 1});
     return all;
 }
 
 struct BagTest : testing::Test {
-    void write(const std::string& topic, std::int64_t utime, const Message& message) {
+    void write(const std::string& topic, std::int64_t utime, const RosBytes& message) {
         bag.write(topic, utime, message.type(), message.bytes());
     }
     void write_infos(const std::string& depth = "/camera/depth/camera_info",
@@ -191,8 +140,8 @@ TEST_F(BagTest, RealSensesOwnTopics) {
     write_infos(depth + "/info/camera_info", color + "/info/camera_info");
     write(depth + "/tf/0", kStart, transform(0));
     write(color + "/tf/0", kStart, transform(0.0148));
-    write("/device_0/sensor_0/option/Depth_Units/value", kStart, Message("std_msgs/Float32").number(0.001f));
-    write("/device_0/info", kStart, Message("diagnostic_msgs/KeyValue").text("Serial Number").text("0123"));
+    write("/device_0/sensor_0/option/Depth_Units/value", kStart, RosBytes("std_msgs/Float32").number(0.001f));
+    write("/device_0/info", kStart, RosBytes("diagnostic_msgs/KeyValue").text("Serial Number").text("0123"));
     write(depth + "/image/data", kStart, depth_image(kStart, "1", "mono16").number(0.00025f));
     write(color + "/image/data", kStart, color_image(kStart, "1"));
     const auto source = open();
@@ -263,7 +212,7 @@ struct AnyBag : BagTest {
     /// A bag of 20 frames in several chunks.
     std::string make(const std::string& compression) {
         BagWriter writer(file.string(), compression);
-        const auto put = [&](const std::string& topic, std::int64_t utime, const Message& message) {
+        const auto put = [&](const std::string& topic, std::int64_t utime, const RosBytes& message) {
             writer.write(topic, utime, message.type(), message.bytes());
         };
         put("/camera/depth/camera_info", kStart, camera_info(kWidth, kHeight, 30));
