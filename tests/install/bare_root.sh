@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
 # bare_root.sh BUILD: the Debian packages on a bare Debian 12. Makes them, debootstraps a root of nothing but Debian's
-# minimal system, installs planemap there as a user does, runs it, and says how large it is. Needs root and Debian's mirror.
+# minimal system, installs planemap there as a user does, runs it, builds the examples on it, and says how large it is.
+# Needs root and Debian's mirror.
 set -euo pipefail
 
 build="$(cd "$1" && pwd)"
@@ -44,4 +45,20 @@ inside bash -c 'apt-get -qq install -y liblcm-bin' >>"$work/apt.log" 2>&1 || fai
 inside timeout 120 planemap-launch 'sim:office?frames=10&width=320&height=240' --lcm-url 'udpm://239.255.76.67:7691?ttl=0' \
     --output /tmp/live --log /tmp/live.lcmlog || fail "planemap-launch"
 [[ -s "$root/tmp/live/plane_map.lcmlog" && -s "$root/tmp/live.lcmlog" ]] || fail "planemap-launch left no map or no log"
-echo "a bare Debian 12 runs planemap"
+
+# What others build on it: the other package, with the compiler of the same Debian, and the examples that it brings.
+before="$(du -sm --one-file-system "$root/usr" | cut -f1)"
+inside bash -c 'apt-get -qq install -y --no-install-recommends /tmp/planemap-dev_*.deb' >>"$work/apt.log" 2>&1 ||
+    fail "planemap-dev: $(tail -n 5 "$work/apt.log")"
+after="$(du -sm --one-file-system "$root/usr" | cut -f1)"
+echo "planemap-dev: $(inside dpkg-query -W -f '${Installed-Size}' planemap-dev) kB installed, with what it needs $((after - before)) MB more"
+inside bash -c 'apt-get -qq install -y --no-install-recommends g++ cmake make' >>"$work/apt.log" 2>&1 || fail "a compiler: $(tail -n 5 "$work/apt.log")"
+inside bash -ec 'cmake -S /usr/share/doc/planemap-dev/examples -B /tmp/examples && cmake --build /tmp/examples' >"$work/examples.log" 2>&1 ||
+    fail "the examples: $(tail -n 20 "$work/examples.log")"
+inside bash -ec 'cd /tmp
+    examples/01_map_a_folder "sim:office?frames=30&width=320&height=240" map.lcmlog
+    examples/03_ask_a_map map.lcmlog
+    examples/02_listen_to_the_map "file:///tmp/map.lcmlog?speed=0" 1' >"$work/examples.txt" 2>&1 || fail "the examples say: $(cat "$work/examples.txt")"
+grep -q 'nearest: plane' "$work/examples.txt" && grep -q '^map .* planes$' "$work/examples.txt" ||
+    fail "the examples say: $(cat "$work/examples.txt")"
+echo "a bare Debian 12 runs planemap, and builds on it"
