@@ -2,8 +2,13 @@
 #include "octomap/octomap_sizes.hpp"
 
 #include <fstream>
+#include <istream>
+#include <iterator>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
+#include <string>
+#include <string_view>
 #include <vector>
 
 namespace planemap::octomap {
@@ -170,14 +175,78 @@ std::vector<Eigen::Vector3d> occupied_voxels_of(const ::octomap::OcTree& tree) {
     return centres;
 }
 
+namespace {
+
+/// What stands before the nodes of a .bt file.
+struct BtHeader {
+    std::string id;
+    std::size_t nodes = 0;
+    double resolution = 0;
+};
+
+/// Nothing if there is none that is whole.
+std::optional<BtHeader> read_header(std::istream& in) {
+    BtHeader header;
+    std::string word;
+    if (!std::getline(in, word) || word != kBtKind) return std::nullopt;
+    while (in >> word && word != "data") {
+        if (word == "id")
+            in >> header.id;
+        else if (word == "size")
+            in >> header.nodes;
+        else if (word == "res")
+            in >> header.resolution;
+        std::getline(in, word);  // comments, and keywords of a later version
+    }
+    in.get();  // the end of its line
+    return in && header.resolution > 0 ? std::optional(header) : std::nullopt;
+}
+
+/// Walks the nodes of a .bt file: two bytes for each inner node, two bits for each of its children, depth
+/// first. OctoMap's own reader goes on behind the end of a file that is cut short.
+class BtNodes {
+  public:
+    explicit BtNodes(std::string_view bytes) : bytes_(bytes) {}
+    /// All of them, the root too; nothing if the bytes are not exactly one tree.
+    std::optional<std::size_t> count() {
+        if (bytes_.empty()) return 0;
+        if (!walk(0) || at_ != bytes_.size()) return std::nullopt;
+        return nodes_;
+    }
+
+  private:
+    static constexpr int kDepth = 16, kInner = 3;
+
+    bool walk(int depth) {
+        if (depth == kDepth || bytes_.size() - at_ < 2) return false;
+        const int children =
+            static_cast<std::uint8_t>(bytes_[at_]) | static_cast<std::uint8_t>(bytes_[at_ + 1]) << 8;
+        at_ += 2;
+        for (int i = 0; i < 8; ++i) {
+            const int child = children >> (2 * i) & 3;
+            nodes_ += child != 0;
+            if (child == kInner && !walk(depth + 1)) return false;
+        }
+        return true;
+    }
+
+    std::string_view bytes_;
+    std::size_t at_ = 0, nodes_ = 1;
+};
+
+}  // namespace
+
+/// Without OctoMap's own readBinary(), which prints.
 std::unique_ptr<::octomap::OcTree> read_bt(const std::filesystem::path& file) {
-    std::ifstream bytes(file, std::ios::binary);
-    std::string kind;
-    std::getline(bytes, kind);  // what is no tree is seen here: readBinary() prints
-    bytes.seekg(0);
-    auto tree = std::make_unique<::octomap::OcTree>(1);
-    if (kind != kBtKind || !tree->readBinary(bytes))
-        throw std::runtime_error(file.string() + ": is no OctoMap (.bt)");
+    std::ifstream in(file, std::ios::binary);
+    const std::optional<BtHeader> header = read_header(in);
+    const std::string nodes{std::istreambuf_iterator<char>(in), {}};
+    auto tree = std::make_unique<::octomap::OcTree>(header ? header->resolution : 1);
+    if (!header || header->id != tree->getTreeType() || BtNodes(nodes).count() != header->nodes)
+        throw std::runtime_error(file.string() + ": is no OctoMap (.bt), or a damaged one");
+    if (nodes.empty()) return tree;
+    std::istringstream bytes(nodes);
+    tree->readBinaryData(bytes);
     return tree;
 }
 

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "octomap/octomap_sizes.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <random>
 #include <sstream>
+
+#include "core/files.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap::octomap {
 namespace {
@@ -87,6 +91,35 @@ TEST(OctomapSizes, OfAnEmptyTreeAreItsHeaders) {
     EXPECT_EQ(sizes.bt_occupied_bytes, bt_of(tree).size());
     EXPECT_EQ(sizes.ot_bytes, ot_of(tree).size());
     EXPECT_EQ(bt_occupied_of(tree), bt_of(tree));
+}
+
+TEST(OctomapSizes, AStoredTreeIsReadInSilence) {
+    const test::TemporaryFolder folder;
+    const std::filesystem::path file = folder / "map.bt";
+    for (const ::octomap::OcTree& tree : {random_tree(5), ::octomap::OcTree(0.1)}) {
+        write_file(file, bt_of(tree));
+        testing::internal::CaptureStdout();
+        testing::internal::CaptureStderr();
+        const auto reread = read_bt(file);
+        EXPECT_EQ(testing::internal::GetCapturedStdout() + testing::internal::GetCapturedStderr(), "");
+        EXPECT_EQ(bt_of(*reread), bt_of(tree));
+        EXPECT_EQ(reread->getResolution(), tree.getResolution());
+    }
+}
+
+TEST(OctomapSizes, WhatIsNoTreeIsOneLine) {
+    const test::TemporaryFolder folder;
+    const std::filesystem::path file = folder / "map.bt";
+    const std::string whole = bt_of(random_tree(6));
+    std::string colored = whole;
+    colored.replace(colored.find("id OcTree"), 9, "id ColTre");
+    for (const std::string& bytes :
+         {std::string(), std::string("x"), whole.substr(0, 30), whole.substr(0, whole.size() / 2), colored}) {
+        write_file(file, bytes);
+        testing::internal::CaptureStderr();
+        EXPECT_THAT(test::error_of([&] { read_bt(file); }), testing::HasSubstr("map.bt: is no OctoMap"));
+        EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << bytes.size();
+    }
 }
 
 }  // namespace
