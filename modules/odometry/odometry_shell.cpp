@@ -204,6 +204,9 @@ void OdometryShell::process(const Waiting& input) {
         status_.set_text(error.what());
         bus_.complaints().add(std::string(messages::channels::kFrame) + ": colour left out: " + error.what());
     }
+    if (in.gray != nullptr && registration_.see(in.utime, *in.depth, *in.gray)) {
+        if (const auto complaint = registration_.complaint()) status_.remark("registration", *complaint);
+    }
     if (input.regions) in.regions = input.regions->regions;
     OdometryResult result;
     {

@@ -13,6 +13,7 @@
 #include "messages/process.hpp"
 #include "odometry/body_frame.hpp"
 #include "odometry/odometry.hpp"
+#include "odometry/registration_check.hpp"
 
 namespace planemap::odometry {
 
@@ -71,6 +72,7 @@ class OdometryShell : public messages::Shell {
     messages::Bus& bus_;
     std::shared_ptr<messages::FrameDecoder> decoder_;
     Odometry odometry_;
+    RegistrationCheck registration_;
     messages::ModuleStatus status_{"odometry"};
     std::deque<Waiting> waiting_;
     std::deque<messages::FrameRegions>
