@@ -54,11 +54,11 @@ ReadAhead::ReadAhead(std::shared_ptr<FrameSource> source)
 }
 
 bool ReadAhead::stop() {
-    constexpr std::chrono::milliseconds kPatience{500};
+    const auto patience = std::exchange(patience_, std::chrono::milliseconds(0));
     std::unique_lock lock(state_->mutex);
     state_->stop = true;
     state_->changed.notify_all();
-    return state_->changed.wait_for(lock, kPatience, [&] { return state_->done; });
+    return state_->changed.wait_for(lock, patience, [&] { return state_->done; });
 }
 
 std::optional<ReadAhead::Item> ReadAhead::take(std::chrono::milliseconds wait) {

@@ -36,6 +36,7 @@ class ReadAhead {
   private:
     struct State;
     std::shared_ptr<State> state_;
+    std::chrono::milliseconds patience_{500};  ///< with a read that is under way, in all
 };
 
 }  // namespace planemap::sensor
