@@ -126,9 +126,9 @@ std::optional<std::string> RegistrationCheck::complaint() const {
     if (!found || found->most_px() < kMinDisplacement_px || found->clearness < kMinClearness ||
         found->clearness - 1 < kMinAdvantage * (found->clearness_elsewhere - 1))
         return std::nullopt;
-    return "depth looks unregistered: its edges lie up to " + std::to_string(std::lround(found->most_px())) +
-           " px beside colour's, " + std::to_string(std::lround(std::abs(found->shift_px))) +
-           " px in the middle; is the camera described right?";
+    return "depth looks unregistered, or its camera wrongly described: its edges lie up to " +
+           std::to_string(std::lround(found->most_px())) + " px beside colour's, " +
+           std::to_string(std::lround(std::abs(found->shift_px))) + " px in the middle";
 }
 
 }  // namespace planemap::odometry

@@ -106,15 +106,15 @@ record() {
 }
 code=0
 (ulimit -f 500 && record "$work/limited.oni" 8) || code=$?
-recorded "$work/limited.oni" '1[0-9][0-9]|2[0-9][0-9]'
+recorded "$work/limited.oni" '[6-9][0-9]|[12][0-9][0-9]'
 mkdir "$work/disk"
 export bin work world size
 export -f record
 if unshare -rm mount -t tmpfs tmpfs "$work/disk" 2>/dev/null; then
     code=0
-    unshare -rm bash -c 'mount -t tmpfs -o size=66m tmpfs "$work/disk" && {
+    unshare -rm bash -c 'mount -t tmpfs -o size=65m tmpfs "$work/disk" && {
         record "$work/disk/a.oni" 4; code=$?; cp "$work/disk/a.oni" "$work/disk.oni"; exit "$code"; }' || code=$?
-    recorded "$work/disk.oni" '[4-9][0-9]|1[0-9][0-9]'
+    recorded "$work/disk.oni" '[2-9][0-9]|1[0-9][0-9]'
     grep -q 'its disk is nearly full' "$work/full.txt" || fail "not told as a full disk: $(cat "$work/full.txt")"
 fi
 
