@@ -44,8 +44,10 @@ TEST(RevisitErrors, NoneForAPerfectEstimateInAnotherFrame) {
 TEST(RevisitErrors, DriftSinceTheFirstVisitIsAnError) {
     const Trajectory truth = circle(3);
     Trajectory drifting = truth;
-    for (std::size_t i = 0; i < truth.size(); ++i)
-        drifting[i].world_from_camera.translation().z() += 0.001 * static_cast<double>(i / 300);
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+        const std::size_t round = i / 300;
+        drifting[i].world_from_camera.translation().z() += 0.001 * static_cast<double>(round);
+    }
     const auto errors = revisit_errors(truth, drifting, find_places(truth));
     ASSERT_TRUE(errors);
     // After one round 1 mm, after two 2 mm; alignment takes a part of it.
