@@ -27,6 +27,10 @@ std::string did_you_mean(const std::string& word, const std::vector<std::string>
     return nearest.empty() ? "" : ", did you mean " + lead + nearest + "?";
 }
 
+std::string one_dash_too_few(const std::string& word) {
+    return "unknown flag " + word + ", did you mean -" + word + "?";
+}
+
 /// Long names without dashes.
 std::vector<std::string> long_names(const CLI::App& app) {
     std::vector<std::string> names;
@@ -327,7 +331,7 @@ class Flags::Impl {
             const std::string word = argument.substr(0, argument.find('='));
             if (word.size() > 2 && word[0] == '-' && word[1] != '-' &&
                 std::find(names.begin(), names.end(), word.substr(1)) != names.end())
-                return "unknown flag " + word + ", did you mean -" + word + "?";
+                return one_dash_too_few(word);
         }
         return "";
     }
@@ -337,13 +341,14 @@ class Flags::Impl {
         std::string group;
         for (const auto& [option, value, heading, expert] : known) {
             if (!option->get_configurable()) continue;
-            if (heading != group && !heading.empty()) text += "\n# " + heading + "\n";
+            if (heading != group && !heading.empty()) text.append("\n# ").append(heading).append("\n");
             group = heading;
             const std::string written = config_text({"", value()});
             std::string description = option->get_description();
             std::replace(description.begin(), description.end(), '\n', ' ');
-            text += (written.empty() ? "# " : "") + name_of(option) + " = " + written + "  # " + description +
-                    "\n";
+            if (written.empty()) text += "# ";
+            text.append(name_of(option)).append(" = ").append(written);
+            text.append("  # ").append(description).append("\n");
         }
         return text;
     }
