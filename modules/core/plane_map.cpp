@@ -34,6 +34,8 @@ const char* label_name(PlaneLabel label) {
             return "horizontal";
         case PlaneLabel::kOther:
             return "other";
+        case PlaneLabel::kVertical:
+            return "vertical";
         case PlaneLabel::kUnknown:
             break;
     }

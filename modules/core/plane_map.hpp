@@ -17,10 +17,11 @@ enum class PlaneLabel : std::int8_t {
     kCeiling = 2,
     kWall = 3,
     kHorizontal = 4,
-    kOther = 5
+    kOther = 5,
+    kVertical = 6
 };
 
-/// "floor", "ceiling", "wall", "horizontal", "other" or "unknown".
+/// "floor", "ceiling", "wall", "horizontal", "vertical", "other" or "unknown".
 const char* label_name(PlaneLabel label);
 
 /// An outline in whole steps: 4 bytes a vertex.

@@ -142,8 +142,8 @@ std::string floor_plan_geojson(const PlaneMap& map, const Trajectory& trajectory
     const double floor_height = floor != nullptr ? level.row(2).dot(floor->center.cast<double>()) : 0;
 
     Json features = Json::array();
-    for (const PlaneLabel label :
-         {PlaneLabel::kFloor, PlaneLabel::kHorizontal, PlaneLabel::kOther, PlaneLabel::kWall}) {
+    for (const PlaneLabel label : {PlaneLabel::kFloor, PlaneLabel::kHorizontal, PlaneLabel::kOther,
+                                   PlaneLabel::kVertical, PlaneLabel::kWall}) {
         for (const MapPlane* plane : planes)
             if (plane->label == label) features.push_back(plane_feature(*plane, level, floor_height));
     }

@@ -24,6 +24,8 @@ Rgb label_color(PlaneLabel label) {
             return {46, 72, 101};
         case PlaneLabel::kHorizontal:
             return {104, 184, 138};
+        case PlaneLabel::kVertical:
+            return {96, 150, 204};
         case PlaneLabel::kOther:
             return {224, 123, 77};
         case PlaneLabel::kUnknown:
@@ -80,8 +82,9 @@ std::string legend(const std::vector<Shown>& planes, std::size_t all) {
         y += 22;
     };
     std::size_t hidden_count = 0, small_count = 0;
-    for (const PlaneLabel label : {PlaneLabel::kFloor, PlaneLabel::kCeiling, PlaneLabel::kWall,
-                                   PlaneLabel::kHorizontal, PlaneLabel::kOther, PlaneLabel::kUnknown}) {
+    for (const PlaneLabel label :
+         {PlaneLabel::kFloor, PlaneLabel::kCeiling, PlaneLabel::kWall, PlaneLabel::kHorizontal,
+          PlaneLabel::kVertical, PlaneLabel::kOther, PlaneLabel::kUnknown}) {
         std::size_t count = 0, hidden = 0;
         for (const Shown& shown : planes) {
             if (shown.plane->label != label) continue;

@@ -6,8 +6,9 @@ import planemap.map_plane_t;
 
 /** Names and colours of the planes' labels, which lcm-spy itself shows as numbers; as in overhead.svg. */
 final class Labels {
-    static final byte[] ALL = {map_plane_t.LABEL_FLOOR,      map_plane_t.LABEL_CEILING, map_plane_t.LABEL_WALL,
-                               map_plane_t.LABEL_HORIZONTAL, map_plane_t.LABEL_OTHER,   map_plane_t.LABEL_UNKNOWN};
+    static final byte[] ALL = {map_plane_t.LABEL_FLOOR,      map_plane_t.LABEL_CEILING,  map_plane_t.LABEL_WALL,
+                               map_plane_t.LABEL_HORIZONTAL, map_plane_t.LABEL_VERTICAL, map_plane_t.LABEL_OTHER,
+                               map_plane_t.LABEL_UNKNOWN};
 
     private Labels() {}
 
@@ -17,6 +18,7 @@ final class Labels {
             case map_plane_t.LABEL_CEILING: return "ceiling";
             case map_plane_t.LABEL_WALL: return "wall";
             case map_plane_t.LABEL_HORIZONTAL: return "horizontal";
+            case map_plane_t.LABEL_VERTICAL: return "vertical";
             case map_plane_t.LABEL_OTHER: return "other";
             default: return "unknown";
         }
@@ -28,6 +30,7 @@ final class Labels {
             case map_plane_t.LABEL_CEILING: return new Color(203, 184, 232);
             case map_plane_t.LABEL_WALL: return new Color(46, 72, 101);
             case map_plane_t.LABEL_HORIZONTAL: return new Color(104, 184, 138);
+            case map_plane_t.LABEL_VERTICAL: return new Color(96, 150, 204);
             case map_plane_t.LABEL_OTHER: return new Color(224, 123, 77);
             default: return new Color(170, 170, 170);
         }
