@@ -151,6 +151,7 @@ class Reader {
 
 // Stands for what later versions read: taken, and told that it is not used yet.
 constexpr const char* kDistortion = "distortion";
+constexpr const char* kAccelerometer = "camera_from_accelerometer";
 
 PinholeCamera read_pinhole(const Reader& reader) {
     reader.require_known({"width", "height", "fx", "fy", "cx", "cy", kDistortion});
@@ -187,6 +188,14 @@ Pose read_transform(const Reader& reader, double farthest_m) {
     Twist twist;
     twist << (*t)[0], (*t)[1], (*t)[2], (*r)[0], (*r)[1], (*r)[2];
     return pose_from_twist(twist);
+}
+
+Eigen::Matrix3d read_rotation(const Reader& reader) {
+    reader.require_known({"rotation_vector_rad"});
+    const auto r = reader.numbers("rotation_vector_rad", 3, {-6.2832, 6.2832, " rad"});
+    Twist twist = Twist::Zero();
+    if (r) twist.tail<3>() << (*r)[0], (*r)[1], (*r)[2];
+    return pose_from_twist(twist).linear();
 }
 
 /// What is known of the kind of sensor, which the file's own range and noise then replace.
@@ -248,7 +257,7 @@ std::vector<std::string> unused_keys(const Reader& reader, const CameraInfo& cam
 CameraInfo read_camera(const Reader& reader) {
     reader.require_known({"sensor", "serial", "depth_camera", "color_camera", "registered",
                           "color_from_depth", "depth_units_per_metre", "depth_range_m", "noise", "poses_of",
-                          "note", "body_from_camera", kDistortion});
+                          "note", "body_from_camera", kAccelerometer, kDistortion});
     CameraInfo camera;
     camera.serial = reader.text("serial", 64);
     camera.depth = read_pinhole(reader.object("depth_camera", true));
@@ -266,6 +275,7 @@ CameraInfo read_camera(const Reader& reader) {
     read_range(reader, camera);
     read_units(reader, camera);
     read_noise(reader.object("noise", false), camera.noise);
+    if (reader.has(kAccelerometer)) read_rotation(reader.object(kAccelerometer, true));
     reader.text("note", 10000);
     const std::string poses_of = reader.text("poses_of", 64);
     if (reader.has("poses_of") && poses_of != "color_camera") {
@@ -283,6 +293,12 @@ nlohmann::ordered_json pinhole_json(const PinholeCamera& camera) {
             {"fy", camera.fy},       {"cx", camera.cx},         {"cy", camera.cy}};
 }
 
+nlohmann::ordered_json transform_json(const Pose& transform) {
+    const Eigen::AngleAxisd rotation(transform.linear());
+    const Eigen::Vector3d r = rotation.angle() * rotation.axis(), t = transform.translation();
+    return {{"rotation_vector_rad", {r.x(), r.y(), r.z()}}, {"translation_m", {t.x(), t.y(), t.z()}}};
+}
+
 }  // namespace
 
 std::string camera_file_text(const CameraInfo& camera) {
@@ -293,13 +309,8 @@ std::string camera_file_text(const CameraInfo& camera) {
         file["color_camera"] = pinhole_json(camera.color);
     file["depth_units_per_metre"] = camera.depth_units_per_metre;
     file["registered"] = camera.registered;
-    if (!camera.registered) {
-        const Eigen::AngleAxisd rotation(camera.color_from_depth.linear());
-        const Eigen::Vector3d r = rotation.angle() * rotation.axis(),
-                              t = camera.color_from_depth.translation();
-        file["color_from_depth"] = {{"rotation_vector_rad", {r.x(), r.y(), r.z()}},
-                                    {"translation_m", {t.x(), t.y(), t.z()}}};
-    }
+    if (!camera.registered) file["color_from_depth"] = transform_json(camera.color_from_depth);
+    if (camera.body_from_camera) file["body_from_camera"] = transform_json(*camera.body_from_camera);
     file["depth_range_m"] = {camera.depth_min_m, camera.depth_max_m};
     file["noise"] = {{"base_m", camera.noise.base_m},
                      {"quadratic_per_m", camera.noise.quadratic_per_m},
@@ -328,6 +339,21 @@ CameraInfo read_camera_file(const std::filesystem::path& file, std::vector<std::
         notes->push_back(file.string() + ": known, but not used: " + joined(unused));
     }
     return camera;
+}
+
+Eigen::Matrix3d camera_from_accelerometer(const std::filesystem::path& camera_file) {
+    std::error_code error;
+    if (std::filesystem::exists(camera_file, error) || error) {
+        const json document = read_json_object(camera_file);
+        FieldErrors errors(camera_file.string());
+        const Reader reader(document, "", errors);
+        if (reader.has(kAccelerometer)) {
+            const Eigen::Matrix3d rotation = read_rotation(reader.object(kAccelerometer, true));
+            errors.throw_if_any();
+            return rotation;
+        }
+    }
+    return Eigen::Vector3d(-1, -1, 1).asDiagonal();
 }
 
 std::optional<CameraInfo> tum_camera(std::string_view folder_name) {

@@ -21,6 +21,7 @@ namespace planemap {
 ///    "depth_range_m": [0.3, 8],            optional, instead of the preset's
 ///    "noise": {"base_m": 0.0012, "quadratic_per_m": 0.0019, "offset_m": 0.4},   optional, as each of its
 ///                                          keys, instead of the preset's
+///    "camera_from_accelerometer": {"rotation_vector_rad": [...]},  optional, see camera_from_accelerometer()
 ///    "body_from_camera": {"rotation_vector_rad": [...], "translation_m": [...]},  optional: how the colour
 ///                                          camera is mounted on the robot (x forward, y left, z up)
 ///    "serial": "K1", "note": "...", "poses_of": "color_camera"}                 optional
@@ -37,6 +38,11 @@ std::string camera_file_text(const CameraInfo& camera);
 /// The published intrinsics of the TUM RGB-D benchmark's sensors (registered, 5000 units a metre) if the name
 /// of the folder holds "freiburg1", "freiburg2" or "freiburg3"; else nothing.
 std::optional<CameraInfo> tum_camera(std::string_view folder_name);
+
+/// How an accelerometer lies in the camera frame: "camera_from_accelerometer" of a camera.json, a rotation
+/// (rotation_vector_rad); without it, or without the file, as a Kinect v1's does: its x left, y up, z ahead.
+/// Throws as read_camera_file(), of this key alone.
+Eigen::Matrix3d camera_from_accelerometer(const std::filesystem::path& camera_file);
 
 /// The camera of a dataset folder: its camera.json, or what tum_camera() knows. Throws as read_camera_file(),
 /// and std::runtime_error that shows what to write if there is neither.

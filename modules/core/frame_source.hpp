@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/acceleration.hpp"
 #include "core/camera.hpp"
 #include "core/image.hpp"
 
@@ -21,6 +22,7 @@ struct SensorFrame {
     std::vector<std::uint8_t> depth_zipped;  ///< the same as the zlib stream that was stored; or empty
     std::vector<std::uint8_t> color_jpeg;    ///< colour as the JPEG that was stored, undecoded; or empty
     RgbImage color;                          ///< colour pixels; empty if color_jpeg is set or without colour
+    std::vector<Acceleration> accelerations{};  ///< read since the frame before, in order; empty without
 };
 
 /// What FrameSource::next() did.

@@ -8,6 +8,7 @@ namespace planemap::messages::channels {
 
 inline constexpr const char* kFrame = "OPENNI_FRAME";                        ///< bot_core.images_t
 inline constexpr const char* kCameraInfo = "PLANEMAP_CAMERA_INFO";           ///< planemap.camera_info_t
+inline constexpr const char* kAcceleration = "PLANEMAP_ACCELERATION";        ///< planemap.acceleration_t
 inline constexpr const char* kRegions = "PLANEMAP_REGIONS";                  ///< planemap.planar_regions_t
 inline constexpr const char* kOdometry = "PLANEMAP_ODOMETRY";                ///< planemap.odometry_t
 inline constexpr const char* kPose = "POSE_BODY";                            ///< bot_core.pose_t

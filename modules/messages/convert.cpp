@@ -193,6 +193,22 @@ camera_info_t to_message(const CameraInfo& camera, std::int64_t utime, std::int3
     return message;
 }
 
+acceleration_t to_message(const Acceleration& reading) {
+    acceleration_t message;
+    message.utime = reading.utime;
+    for (int i = 0; i < 3; ++i) message.acceleration[i] = reading.acceleration_camera[i];
+    return message;
+}
+
+Acceleration from_message(const acceleration_t& message) {
+    constexpr double kMost = 1000;  // m/s2: 100 g
+    Acceleration reading;
+    reading.utime = checked_utime(message.utime, "acceleration.utime");
+    for (int i = 0; i < 3; ++i) reading.acceleration_camera[i] = message.acceleration[i];
+    require(reading.acceleration_camera.norm() <= kMost, "acceleration.acceleration", "is none");  // nor NaN
+    return reading;
+}
+
 CameraInfo from_message(const camera_info_t& message) {
     checked_utime(message.utime, "camera_info.utime");
     CameraInfo camera;
@@ -474,7 +490,7 @@ map_plane_t to_message(const MapPlane& plane) {
 MapPlane from_message(const map_plane_t& message) {
     MapPlane plane;
     plane.id = message.id;
-    require(message.label >= 0 && message.label <= 5, "plane.label", "is unknown");
+    require(message.label >= 0 && message.label <= 6, "plane.label", "is unknown");
     plane.label = static_cast<PlaneLabel>(message.label);
     plane.normal = Eigen::Vector3f(message.normal);
     plane.center = Eigen::Vector3f(message.center);

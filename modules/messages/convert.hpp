@@ -6,6 +6,7 @@
 #include <bot_core/images_t.hpp>
 #include <bot_core/pose_t.hpp>
 #include <bot_core/rigid_transform_t.hpp>
+#include <planemap/acceleration_t.hpp>
 #include <planemap/camera_info_t.hpp>
 #include <planemap/keyframe_t.hpp>
 #include <planemap/odometry_t.hpp>
@@ -16,6 +17,7 @@
 #include <span>
 #include <vector>
 
+#include "core/acceleration.hpp"
 #include "core/body_motion.hpp"
 #include "core/camera.hpp"
 #include "core/image.hpp"
@@ -47,6 +49,9 @@ struct FrameRegions {
     std::int64_t utime = 0;  ///< of the depth image
     std::vector<PlanarRegion> regions;
 };
+acceleration_t to_message(const Acceleration& reading);
+Acceleration from_message(const acceleration_t& message);
+
 planar_regions_t to_message(const FrameRegions& regions, std::int32_t seq, std::int64_t session = 0);
 FrameRegions from_message(const planar_regions_t& message);
 

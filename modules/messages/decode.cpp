@@ -8,6 +8,7 @@
 #include <exception>
 #include <kinect/frame_msg_t.hpp>
 #include <limits>
+#include <planemap/acceleration_t.hpp>
 #include <planemap/camera_info_t.hpp>
 #include <planemap/keyframe_t.hpp>
 #include <planemap/map_size_t.hpp>
@@ -128,6 +129,9 @@ void walk(Walker& w, const camera_info_t*) {
     w.string("serial");
     w.skip(2 * (8 + 32) + 1 + kTransform + 6 * kDouble, "intrinsics");
     w.skip(8 + 1 + kTransform, "body_from_camera");
+}
+void walk(Walker& w, const acceleration_t*) {
+    w.skip(8 + 3 * kDouble, "acceleration");
 }
 void walk(Walker& w, const planar_regions_t*) {
     w.skip(8 + 4, "utime");
@@ -289,6 +293,7 @@ PLANEMAP_DECODES(bot_core::images_t)
 PLANEMAP_DECODES(bot_core::pose_t)
 PLANEMAP_DECODES(bot_core::rigid_transform_t)
 PLANEMAP_DECODES(kinect::frame_msg_t)
+PLANEMAP_DECODES(acceleration_t)
 PLANEMAP_DECODES(camera_info_t)
 PLANEMAP_DECODES(planar_regions_t)
 PLANEMAP_DECODES(odometry_t)

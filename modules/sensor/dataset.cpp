@@ -9,6 +9,7 @@
 #include "core/camera_file.hpp"
 #include "core/files.hpp"
 #include "core/text_file.hpp"
+#include "sensor/accelerometer_file.hpp"
 #include "sensor/jpeg.hpp"
 #include "sensor/png.hpp"
 
@@ -135,12 +136,36 @@ Dataset::Dataset(const fs::path& folder, const SourceOptions& options)
     const auto [from, to] = frames_within(options.frames, frames_.size());
     frames_ = {frames_.begin() + static_cast<std::ptrdiff_t>(from),
                frames_.begin() + static_cast<std::ptrdiff_t>(to)};
+    read_accelerometer();
+}
+
+/// One that cannot be read is left out: frames are worth more.
+void Dataset::read_accelerometer() {
+    const fs::path file = folder_ / "accelerometer.txt";
+    if (!stands(file)) return;
+    try {
+        accelerations_ = read_accelerometer_file(file, camera_from_accelerometer(folder_ / "camera.json"));
+    } catch (const std::exception& error) {
+        notes_.push_back(std::string(error.what()) + "; the accelerometer is not used");
+        return;
+    }
+    // Of the time before the first frame, what may still be of that one's.
+    constexpr std::int64_t kBefore_us = 1000000;
+    const auto first = std::partition_point(
+        accelerations_.begin(), accelerations_.end(),
+        [&](const Acceleration& a) { return a.utime < frames_.front().depth.utime - kBefore_us; });
+    next_acceleration_ = static_cast<std::size_t>(first - accelerations_.begin());
 }
 
 ReadResult Dataset::next(SensorFrame& frame) {
     frame = {};
     if (next_ == frames_.size()) return {};
     const ListedFrame& listed = frames_[next_++];
+    std::vector<Acceleration> accelerations;
+    for (; next_acceleration_ < accelerations_.size(); ++next_acceleration_) {
+        if (accelerations_[next_acceleration_].utime > listed.depth.utime) break;
+        accelerations.push_back(accelerations_[next_acceleration_]);
+    }
     ReadResult result;
     result.status = ReadResult::Status::kFrame;
     bool depth_whole = true, color_whole = true;
@@ -162,6 +187,7 @@ ReadResult Dataset::next(SensorFrame& frame) {
             result.message += "; the frame is used without colour";
         }
     }
+    frame.accelerations = std::move(accelerations);
     if (!depth_whole) blame_end(folder_ / listed.depth.file, result);
     if (!color_whole) blame_end(folder_ / listed.color->file, result);
     return result;

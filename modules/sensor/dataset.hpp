@@ -10,11 +10,11 @@
 namespace planemap::sensor {
 
 /// A folder in the layout of the TUM RGB-D benchmark: depth.txt, rgb.txt (optional), associations.txt
-/// (optional; its pairs are then the frames), camera.json (see camera_of_folder()), and the images they name:
-/// depth as 16-bit greyscale PNG, colour as JPEG (passed on undecoded) or 8-bit PNG.
-/// A frame whose depth cannot be read is kBroken; one whose colour cannot is delivered without it, with a
-/// message. A PNG whose pixels are all there is used even if the end of the file is missing, and that is
-/// told.
+/// (optional; its pairs are then the frames), accelerometer.txt (optional), camera.json (see
+/// camera_of_folder()), and the images they name: depth as 16-bit greyscale PNG, colour as JPEG (passed on
+/// undecoded) or 8-bit PNG. A frame whose depth cannot be read is kBroken; one whose colour cannot is
+/// delivered without it, with a message. A PNG whose pixels are all there is used even if the end of the file
+/// is missing, and that is told.
 class Dataset : public FrameSource {
   public:
     /// Throws std::runtime_error naming file and reason when there is no folder, no list or no depth in it.
@@ -29,6 +29,7 @@ class Dataset : public FrameSource {
     const std::vector<ListedFrame>& frames() const { return frames_; }
 
   private:
+    void read_accelerometer();
     bool read_depth(const ListedImage& image, SensorFrame& frame) const;
     bool read_color(const ListedImage& image, SensorFrame& frame) const;
 
@@ -37,6 +38,8 @@ class Dataset : public FrameSource {
     CameraInfo camera_;
     std::vector<ListedFrame> frames_;
     std::size_t next_ = 0;
+    std::vector<Acceleration> accelerations_;  ///< in order of time
+    std::size_t next_acceleration_ = 0;
 };
 
 }  // namespace planemap::sensor

@@ -125,6 +125,7 @@ LogFrames::Found LogFrames::next(LogEvent& event) {
         if (is_frame(event)) unread_.add(event);
         if (!options_.camera_is_given && event.channel == messages::channels::kCameraInfo)
             return Found::kCamera;
+        if (event.channel == messages::channels::kAcceleration) return Found::kAcceleration;
     }
     return Found::kEnd;
 }

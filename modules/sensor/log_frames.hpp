@@ -28,9 +28,10 @@ class LogFrames {
   public:
     /// What next() found.
     enum class Found {
-        kFrame,   ///< the event is an images_t
-        kBroken,  ///< a frame that is none; fault() says why
-        kCamera,  ///< the event is a camera_info_t on PLANEMAP_CAMERA_INFO
+        kFrame,         ///< the event is an images_t
+        kBroken,        ///< a frame that is none; fault() says why
+        kCamera,        ///< the event is a camera_info_t on PLANEMAP_CAMERA_INFO
+        kAcceleration,  ///< the event is one on PLANEMAP_ACCELERATION
         kEnd,
     };
 

@@ -3,6 +3,7 @@
 
 #include <planemap/camera_info_t.hpp>
 #include <string>
+#include <utility>
 
 #include "messages/convert.hpp"
 #include "messages/decode.hpp"
@@ -27,6 +28,9 @@ ReadResult LogSource::next(SensorFrame& frame) {
             case LogFrames::Found::kCamera:
                 hear_camera(event);
                 continue;
+            case LogFrames::Found::kAcceleration:
+                hear_acceleration(event);
+                continue;
             case LogFrames::Found::kBroken:
                 return broken(event, log_.fault());
             case LogFrames::Found::kFrame:
@@ -48,7 +52,7 @@ ReadResult LogSource::broken(const messages::LogEvent& event, const std::string&
             reason};
 }
 
-ReadResult LogSource::read(const messages::LogEvent& event, SensorFrame& frame) const {
+ReadResult LogSource::read(const messages::LogEvent& event, SensorFrame& frame) {
     auto images = messages::decode<bot_core::images_t>(event.bytes);
     const bot_core::image_t* depth = messages::find_depth(images);
     if (depth == nullptr) throw messages::MessageError("no depth image (DEPTH_MM or DEPTH_MM_ZIPPED) in it");
@@ -57,6 +61,7 @@ ReadResult LogSource::read(const messages::LogEvent& event, SensorFrame& frame) 
     frame.utime = messages::checked_utime(images.utime, "frame.utime");
     frame.depth = messages::depth_pixels(*depth, zipped);
     if (zipped) frame.depth_zipped = depth->data;
+    frame.accelerations = std::exchange(accelerations_, {});
     ReadResult result;
     result.status = ReadResult::Status::kFrame;
     const bot_core::image_t* color = messages::find_color(images);
@@ -94,12 +99,26 @@ void LogSource::hear_camera(const messages::LogEvent& event) {
     }
 }
 
+/// One that is none says nothing.
+void LogSource::hear_acceleration(const messages::LogEvent& event) {
+    constexpr std::size_t kMost = 10000;  // without a frame between
+    try {
+        if (accelerations_.size() < kMost)
+            accelerations_.push_back(messages::from_message(messages::decode<acceleration_t>(event.bytes)));
+    } catch (const messages::MessageError&) {
+        ++broken_accelerations_;
+    }
+}
+
 std::vector<std::string> LogSource::complaints() const {
     std::vector<std::string> lines = log_.complaints();
     if (other_cameras_ > 0)
         lines.push_back(file_.string() + ": " + std::to_string(other_cameras_) +
                         " of its camera_info_t are unusable or of another camera than the first, which is "
                         "used for all frames");
+    if (broken_accelerations_ > 0)
+        lines.push_back(file_.string() + ": " + std::to_string(broken_accelerations_) +
+                        " of its readings of an accelerometer are unusable");
     return lines;
 }
 

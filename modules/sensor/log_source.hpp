@@ -24,15 +24,18 @@ class LogSource : public FrameSource {
     std::optional<double> progress() const override { return log_.progress(); }
 
   private:
-    ReadResult read(const messages::LogEvent& event, SensorFrame& frame) const;
+    ReadResult read(const messages::LogEvent& event, SensorFrame& frame);
     ReadResult broken(const messages::LogEvent& event, const std::string& reason) const;
     void read_color(const bot_core::image_t& image, SensorFrame& frame) const;
     void hear_camera(const messages::LogEvent& event);
+    void hear_acceleration(const messages::LogEvent& event);
 
     std::filesystem::path file_;
     LogFrames log_;
     CameraInfo camera_;
-    std::int64_t other_cameras_ = 0;  ///< descriptions of another camera than the first
+    std::int64_t other_cameras_ = 0;           ///< descriptions of another camera than the first
+    std::vector<Acceleration> accelerations_;  ///< since the last frame
+    std::int64_t broken_accelerations_ = 0;
 };
 
 }  // namespace planemap::sensor

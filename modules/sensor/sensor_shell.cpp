@@ -169,6 +169,7 @@ bool SensorShell::jumps() const {
 /// As if the frame had been taken at this time.
 void SensorShell::restamp(std::int64_t utime) {
     if (frame_.color_utime != 0) frame_.color_utime += utime - frame_.utime;
+    for (Acceleration& reading : frame_.accelerations) reading.utime += utime - frame_.utime;
     frame_.utime = utime;
 }
 
@@ -238,6 +239,8 @@ void SensorShell::publish_camera(std::int64_t utime) {
 void SensorShell::publish(const SensorFrame& frame) {
     const messages::ModuleStatus::Work work(status_);
     if (camera_seq_ == 0 || camera_is_due(frame.utime)) publish_camera(frame.utime);
+    for (const Acceleration& reading : frame.accelerations)
+        bus_.publish(messages::channels::kAcceleration, messages::to_message(reading));
     bot_core::images_t images;
     images.utime = frame.utime;
     const CameraInfo& camera = source_->camera();

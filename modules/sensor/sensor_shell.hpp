@@ -33,7 +33,8 @@ struct SensorShellOptions {
     std::filesystem::path position;
 };
 
-/// Publishes a source's frames (OPENNI_FRAME) and its camera (PLANEMAP_CAMERA_INFO at the start, once a
+/// Publishes a source's frames (OPENNI_FRAME), what its accelerometer read before each
+/// (PLANEMAP_ACCELERATION), and its camera (PLANEMAP_CAMERA_INFO at the start, once a
 /// second, and as a process of its own when a module on the network says that it was started just now). A
 /// fault of the source is logged when it is first seen, and counted.
 class SensorShell : public messages::Shell {

@@ -223,6 +223,31 @@ TEST(Convert, MapPlaneTakesAtMost96BytesAnd4AVertex) {
     }
 }
 
+TEST(Convert, LabelsThatAreAddedDoNotChangeTheTypes) {
+    // Constants are no part of a fingerprint: who was built before LABEL_VERTICAL decodes today's maps.
+    EXPECT_EQ(static_cast<std::uint64_t>(map_plane_t::getHash()), 0x783e0d562cdf171eu);
+    EXPECT_EQ(static_cast<std::uint64_t>(plane_map_t::getHash()), 0x890cd1fe3f86f0fau);
+    PlaneMap map = room_map(4);
+    map.planes[0].label = PlaneLabel::kVertical;
+    EXPECT_EQ(from_message(to_message(map, 1)).planes[0].label, PlaneLabel::kVertical);
+    EXPECT_EQ(to_message(map, 1).planes[0].label, map_plane_t::LABEL_VERTICAL);
+    plane_map_t unknown = to_message(map, 1);
+    unknown.planes[0].label = 7;
+    EXPECT_THROW(from_message(unknown), MessageError);
+}
+
+TEST(Convert, AccelerationComesBackAsItWas) {
+    const Acceleration reading{7, {0.1, -9.7, 1.2}};
+    const Acceleration back = from_message(to_message(reading));
+    EXPECT_EQ(back.utime, 7);
+    EXPECT_EQ(back.acceleration_camera, reading.acceleration_camera);
+    for (const double bad : {std::nan(""), 1e9}) {
+        acceleration_t message = to_message(reading);
+        message.acceleration[1] = bad;
+        EXPECT_THROW(from_message(message), MessageError);
+    }
+}
+
 TEST(Convert, MapComesBackAsItWas) {
     PlaneMap map = room_map(40);
     map.up = {0, -1, 0};

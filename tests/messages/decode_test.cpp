@@ -85,6 +85,7 @@ void torment(const T& message) {
 TEST(Decode, SurvivesHostileBytes) {
     torment(sample_images());
     torment(to_message(test::sample_camera(), 1, 2));
+    torment(to_message(Acceleration{1, {0, -9.8, 0}}));
     torment(to_message(FrameRegions{7, {test::sample_region()}}, 3));
     torment(to_message(OdometryEstimate(), 4));
     torment(to_message(test::sample_keyframe(), 5));

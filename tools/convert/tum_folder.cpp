@@ -33,6 +33,7 @@ class Writer {
 
     /// False for a stamp that was there.
     bool write(const SensorFrame& frame) {
+        for (const Acceleration& reading : frame.accelerations) write_acceleration(reading);
         if (!stamps_.insert(frame.utime).second) return false;
         const std::string stamp = stamp_text(frame.utime), file = "depth/" + stamp + ".png";
         sensor::write_depth_png(folder_ / file, frame.depth);
@@ -46,6 +47,8 @@ class Writer {
     /// is such a frame the lists are paired anew by who reads them.
     void finish() {
         write_file(folder_ / "depth.txt", "# timestamp filename\n" + depth_list_);
+        if (!accelerations_.empty())
+            write_file(folder_ / "accelerometer.txt", "# timestamp ax ay az\n" + accelerations_);
         if (color_stamps_.empty()) return;
         write_file(folder_ / "rgb.txt", "# timestamp filename\n" + color_list_);
         if (color_stamps_.size() == stamps_.size()) write_file(folder_ / "associations.txt", pairs_);
@@ -67,7 +70,16 @@ class Writer {
         pairs_ += depth + " " + stamp + " " + file + "\n";
     }
 
+    /// In the axes that are assumed where camera.json says nothing of them.
+    void write_acceleration(const Acceleration& reading) {
+        const Eigen::Vector3d a = camera_from_accelerometer({}).transpose() * reading.acceleration_camera;
+        char text[120];
+        std::snprintf(text, sizeof(text), " %.9g %.9g %.9g\n", a.x(), a.y(), a.z());
+        accelerations_ += stamp_text(reading.utime) + text;
+    }
+
     fs::path folder_;
+    std::string accelerations_;
     std::string depth_list_, color_list_, pairs_;
     std::set<std::int64_t> stamps_, color_stamps_;
 };

@@ -18,10 +18,11 @@ struct TumFolder {
 
 /// Writes a source's frames as a folder in the layout of the TUM RGB-D benchmark, as planemap reads it:
 /// depth/ and rgb/ with images named by their stamps (a stored JPEG as it is, pixels as PNG), depth.txt,
-/// rgb.txt, associations.txt where there is colour, and camera.json; groundtruth.txt where `truth` holds
-/// poses. Depth, stamps and pairs come back as they were. `folder` must not be there; it is whole or not
-/// there at all. Calls `go_on` with the frames so far, and throws std::runtime_error when it gives false.
-/// `say` is told of what could not be read, a line the first time of each reason.
+/// rgb.txt, associations.txt where there is colour, accelerometer.txt where there was one, and camera.json;
+/// groundtruth.txt where `truth` holds poses. Depth, stamps and pairs come back as they were. `folder` must
+/// not be there; it is whole or not there at all. Calls `go_on` with the frames so far, and throws
+/// std::runtime_error when it gives false. `say` is told of what could not be read, a line the first time of
+/// each reason.
 TumFolder write_tum_folder(FrameSource& source, const Trajectory& truth, const std::filesystem::path& folder,
                            const std::function<bool(std::int64_t)>& go_on,
                            const std::function<void(const std::string&)>& say);

@@ -118,6 +118,10 @@ class LogInput : public Input {
                     bus_.publish_bytes(messages::channels::kCameraInfo, event.bytes);
                     continue;
                 }
+                if (found == Found::kAcceleration) {
+                    bus_.publish_bytes(messages::channels::kAcceleration, event.bytes);
+                    continue;
+                }
                 ++frames_;
                 if (found == Found::kFrame) bus_.publish_bytes(messages::channels::kFrame, event.bytes);
                 if (found == Found::kBroken && ++broken_ == 1) fault_ = log_.fault();
