@@ -2,13 +2,19 @@
 #include "map/derived_map.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "core/angle.hpp"
 #include "map/labels.hpp"
 
 namespace planemap::map {
 
 namespace {
+
+constexpr const char* kByEarlier = "by the map to start from";
+/// Cosine of 30 deg: so far from what planes and motion say, what was told is doubted aloud.
+constexpr double kContradicts = 0.866;
 
 /// So many of the poses or a few more, spread over all: they tell which way is up as well as all do.
 std::vector<Pose> some_of(const std::map<int, Pose>& poses) {
@@ -27,6 +33,8 @@ std::vector<Pose> some_of(const std::map<int, Pose>& poses) {
 void DerivedMap::start_from(const PlaneMap& map) {
     map_.utime = map.utime;
     map_.up = map.up;
+    earlier_up_ = map.up;
+    if (!map.up.isZero()) why_up_ = kByEarlier;
 }
 
 void DerivedMap::take_labels(const PlaneMap& earlier) {
@@ -53,7 +61,29 @@ bool DerivedMap::derive(PlaneEstimate& estimate, std::optional<MapPlane>& plane)
     return true;
 }
 
-void DerivedMap::refresh(std::vector<PlaneEstimate>& estimates, const std::map<int, Pose>& poses) {
+/// Finds up, by the best that says it, and labels all planes.
+void DerivedMap::label(const std::map<int, Pose>& poses, const ToldUp& told) {
+    const std::vector<Pose> cameras = some_of(poses);
+    if (cameras.empty()) return;
+    const LabelRules rules;
+    Up up = told.find(poses, map_.planes, rules.gravity);
+    Up found = find_up(map_.planes, cameras, rules.gravity);
+    if (!up.direction) {
+        if (!found.direction && !earlier_up_.isZero()) found = {earlier_up_.cast<double>(), kByEarlier};
+        up = {found.direction, (up.why.empty() ? "" : up.why + "; ") + found.why};
+    } else if (found.direction && up.direction->dot(*found.direction) < kContradicts) {
+        up.why += "; planes and motion say another direction, " +
+                  std::to_string(std::lround(degrees(angle_between(*up.direction, *found.direction)))) +
+                  " deg off: is that how it is mounted?";
+    }
+    label_planes(map_, up, cameras, rules);
+    why_up_ = up.why;
+    told_revision_ = told.revision();
+    told_poses_ = poses.size();
+}
+
+void DerivedMap::refresh(std::vector<PlaneEstimate>& estimates, const std::map<int, Pose>& poses,
+                         const ToldUp& told) {
     std::map<int, MapPlane> before;
     for (MapPlane& plane : map_.planes) before.emplace(plane.id, std::move(plane));
     std::vector<int> changed;
@@ -76,8 +106,9 @@ void DerivedMap::refresh(std::vector<PlaneEstimate>& estimates, const std::map<i
     map_.planes = std::move(planes);
     std::sort(changed.begin(), changed.end());
     intersections_.update(map_, changed);
-    if (changed.empty()) return;
-    if (const std::vector<Pose> cameras = some_of(poses); !cameras.empty()) label_planes(map_, cameras);
+    const bool more_is_told =
+        told.revision() != told_revision_ || (told.revision() > 0 && poses.size() != told_poses_);
+    if (!changed.empty() || more_is_told) label(poses, told);
 }
 
 }  // namespace planemap::map

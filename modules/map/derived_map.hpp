@@ -5,11 +5,13 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/plane_map.hpp"
 #include "map/map_intersections.hpp"
 #include "map/plane_derivation.hpp"
+#include "map/told_up.hpp"
 
 namespace planemap::map {
 
@@ -32,16 +34,26 @@ class DerivedMap {
     /// The newest keyframe in the map may be this one.
     void seen_at(std::int64_t utime);
 
-    /// Derives planes anew that changed, with their intersections; and if any did, finds up and labels all.
-    /// `poses` are world_from_camera of keyframes, by id. Estimates are marked as derived.
-    void refresh(std::vector<PlaneEstimate>& estimates, const std::map<int, Pose>& poses);
+    /// Derives planes anew that changed, with their intersections; and if any did, or more was told, finds up
+    /// and labels all: by what was told, else by planes and motion, else by the map to start from. `poses`
+    /// are world_from_camera of keyframes, by id. Estimates are marked as derived.
+    void refresh(std::vector<PlaneEstimate>& estimates, const std::map<int, Pose>& poses,
+                 const ToldUp& told = {});
+    /// Where map().up is from, or why it is not known: a clause.
+    const std::string& why_up() const { return why_up_; }
 
   private:
+    void label(const std::map<int, Pose>& poses, const ToldUp& told);
     bool derive(PlaneEstimate& estimate, std::optional<MapPlane>& plane) const;
 
     DerivationRules derivation_;
     MapIntersections intersections_;
     PlaneMap map_;
+    Eigen::Vector3f earlier_up_ = Eigen::Vector3f::Zero();  ///< of the map to start from; zero: not known
+    std::string why_up_ = "there are no planes";
+    // When the planes were labelled last:
+    int told_revision_ = 0;       ///< of what was told
+    std::size_t told_poses_ = 0;  ///< of keyframes where it was told
 };
 
 }  // namespace planemap::map

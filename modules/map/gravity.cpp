@@ -3,112 +3,94 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "core/angle.hpp"
+#include "map/handling.hpp"
+#include "map/room_view.hpp"
 
 namespace planemap::map {
 
 namespace {
 
-constexpr std::size_t kPosesUsed = 256;           // of a long trajectory, evenly
 constexpr std::size_t kNormals = 16, kPairs = 8;  // large planes that answers are made of
-constexpr double kMotion_m = 0.5;  // spread of the positions at which their evidence counts half
-constexpr double kMotionShare = 0.5;
+constexpr double kSame_deg = 3;                   // answers nearer than that are one
 constexpr int kRefinements = 4;
-constexpr double kHeldWeight = 1e-3;  // of the cameras beside the planes: decides what planes leave open
+constexpr double kPlanesOdds = 10, kFacingOdds = 2, kHangingOdds = 3, kLowOdds = 2;
+constexpr double kToldWeight = 0.05;  // of what was told, or of the answer, beside the planes: it decides
+                                      // what the planes leave open
 
-struct Evidence {
-    Eigen::Vector3d normal;
-    double weight;
-};
-
-std::vector<Evidence> evidence_of(std::span<const MapPlane> planes) {
-    std::vector<Evidence> evidence;
-    evidence.reserve(planes.size());
-    double sum = 0;
-    for (const MapPlane& plane : planes) {
-        const double length = plane.normal.cast<double>().norm();
-        const double weight = std::sqrt(static_cast<double>(plane.area));
-        if (!(std::abs(length - 1) < 1e-3 && weight > 0 && std::isfinite(weight))) continue;
-        evidence.push_back({plane.normal.cast<double>() / length, weight});
-        sum += weight;
-    }
-    for (Evidence& e : evidence) e.weight /= sum;
-    std::stable_sort(evidence.begin(), evidence.end(),
-                     [](const Evidence& a, const Evidence& b) { return a.weight > b.weight; });
-    return evidence;
-}
-
-/// How the camera was held and moved.
-struct Handling {
-    Eigen::Vector3d up = Eigen::Vector3d::Zero();        ///< unit: the average of -y
-    Eigen::Matrix3d sideways = Eigen::Matrix3d::Zero();  ///< u' sideways u is small for the true up
-
-    double fit(const Eigen::Vector3d& u) const { return u.dot(up) - u.dot(sideways * u); }
-};
-
-std::optional<Handling> handling_of(std::span<const Pose> world_from_camera) {
-    Eigen::Vector3d up = Eigen::Vector3d::Zero(), mean = Eigen::Vector3d::Zero();
-    Eigen::Matrix3d rows = Eigen::Matrix3d::Zero(), squares = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d origin = Eigen::Vector3d::Zero();
-    double count = 0;
-    const std::size_t step = world_from_camera.size() / kPosesUsed + 1;
-    for (std::size_t i = 0; i < world_from_camera.size(); i += step) {
-        const Pose& pose = world_from_camera[i];
-        if (!pose.matrix().allFinite()) continue;
-        const Eigen::Vector3d x = pose.linear().col(0);
-        if (count == 0) origin = pose.translation();
-        const Eigen::Vector3d p = pose.translation() - origin;
-        up -= pose.linear().col(1);
-        rows += x * x.transpose();
-        mean += p;
-        squares += p * p.transpose();
-        count += 1;
-    }
-    if (up.norm() < 0.1 * count || count == 0) return std::nullopt;
-    mean /= count;
-    const Eigen::Matrix3d motion = squares / count - mean * mean.transpose();
-    Handling handling;
-    handling.up = up.normalized();
-    handling.sideways = rows / count + kMotionShare / (motion.trace() + kMotion_m * kMotion_m) * motion;
-    return handling;
-}
-
-/// 1 for a plane exactly level or upright about u, falling to 0 at the tolerance. Negative: upright.
-double agreement(const Eigen::Vector3d& normal, const Eigen::Vector3d& u, double sin2_tolerance) {
-    const double cos2 = std::pow(normal.dot(u), 2);
-    if (cos2 < sin2_tolerance) return cos2 / sin2_tolerance - 1;
-    return std::max(0.0, 1 - (1 - cos2) / sin2_tolerance);
-}
-
-std::vector<Eigen::Vector3d> answers(const std::vector<Evidence>& evidence, const Handling& handling,
-                                     double min_cos) {
+/// Directions that may be up, each with its opposite.
+std::vector<Eigen::Vector3d> answers(const RoomView& room, const Handling& handling) {
     std::vector<Eigen::Vector3d> found;
+    const double same = std::cos(radians(kSame_deg));
     const auto add = [&](const Eigen::Vector3d& direction) {
         const double length = direction.norm();
         if (length < 0.2) return;  // badly determined
-        const double cos = direction.dot(handling.up) / length;
-        if (std::abs(cos) >= min_cos) found.push_back((cos > 0 ? 1 : -1) / length * direction);
+        for (const double sign : {1.0, -1.0}) {
+            const Eigen::Vector3d u = sign / length * direction;
+            if (std::none_of(found.begin(), found.end(), [&](const auto& f) { return f.dot(u) > same; }))
+                found.push_back(u);
+        }
     };
-    for (std::size_t i = 0; i < std::min(evidence.size(), kNormals); ++i) add(evidence[i].normal);
-    for (std::size_t i = 0; i < std::min(evidence.size(), kPairs); ++i) {
-        const Eigen::Vector3d& n = evidence[i].normal;
-        add(handling.up - n.dot(handling.up) * n);
-        for (std::size_t j = 0; j < i; ++j) add(n.cross(evidence[j].normal));
+    const std::span<const RoomView::Seen> planes = room.planes();
+    const std::array<Eigen::Vector3d, 2> image{handling.image_down(), handling.image_right()};
+    for (std::size_t i = 0; i < std::min(planes.size(), kNormals); ++i) add(planes[i].normal);
+    for (std::size_t i = 0; i < std::min(planes.size(), kPairs); ++i) {
+        const Eigen::Vector3d& n = planes[i].normal;
+        for (const Eigen::Vector3d& axis : image) add(axis - n.dot(axis) * n);
+        for (std::size_t j = 0; j < i; ++j) add(n.cross(planes[j].normal));
     }
+    for (const Eigen::Vector3d& axis : image) add(axis);
     return found;
 }
 
-Eigen::Vector3d refined(Eigen::Vector3d up, const std::vector<Evidence>& evidence, const Handling& handling,
-                        double sin2_tolerance) {
+double sin2_tolerance(const GravityRules& rules) {
+    return std::pow(std::sin(radians(rules.tolerance_deg)), 2);
+}
+
+struct Judged {
+    Eigen::Vector3d up = Eigen::Vector3d::Zero();
+    double odds = 0;  ///< logarithm
+};
+
+/// The answers, the best first. Those that have no chance any more are left out.
+std::vector<Judged> judged(const RoomView& room, const Handling& handling, const GravityRules& rules) {
+    const double tolerance = sin2_tolerance(rules);
+    std::vector<Judged> found;
+    for (const Eigen::Vector3d& u : answers(room, handling))
+        found.push_back(
+            {u, handling.log_turned(u) + handling.log_moved(u) + kPlanesOdds * room.square(u, tolerance)});
+    const auto by_odds = [](const Judged& a, const Judged& b) { return a.odds > b.odds; };
+    std::stable_sort(found.begin(), found.end(), by_odds);
+    double best = -std::numeric_limits<double>::infinity();
+    std::size_t count = 0;
+    for (; count < found.size(); ++count) {
+        Judged& judged = found[count];
+        if (judged.odds + Handling::kMostHeld + kFacingOdds + kLowOdds < best - rules.margin) break;
+        const RoomView::Reading reading = room.read(judged.up, tolerance);
+        judged.odds += handling.log_held(judged.up) + kFacingOdds * reading.facing_up +
+                       kLowOdds * reading.low - kHangingOdds * reading.hanging;
+        best = std::max(best, judged.odds);
+    }
+    found.resize(count);
+    std::stable_sort(found.begin(), found.end(), by_odds);
+    return found;
+}
+
+/// The direction made exact by the planes that are level or upright about it.
+Eigen::Vector3d refined(const Eigen::Vector3d& start, const RoomView& room, const GravityRules& rules) {
+    const double tolerance = sin2_tolerance(rules);
+    Eigen::Vector3d up = start;
     for (int i = 0; i < kRefinements; ++i) {
         // Up is where the sum of w (n . u)^2 over upright planes less that over level ones is smallest.
-        Eigen::Matrix3d sum = kHeldWeight * (handling.sideways - handling.up * handling.up.transpose());
-        for (const Evidence& e : evidence) {
-            const double fit = agreement(e.normal, up, sin2_tolerance);
-            if (fit != 0) sum -= e.weight * fit * e.normal * e.normal.transpose();
+        Eigen::Matrix3d sum = -kToldWeight * start * start.transpose();
+        for (const RoomView::Seen& plane : room.planes()) {
+            const double fit = squareness(plane.normal, up, tolerance);
+            if (fit != 0) sum -= plane.weight * fit * plane.normal * plane.normal.transpose();
         }
         const Eigen::Vector3d next =
             Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(sum).eigenvectors().col(0);
@@ -117,32 +99,46 @@ Eigen::Vector3d refined(Eigen::Vector3d up, const std::vector<Evidence>& evidenc
     return up;
 }
 
+std::string number(double value) {
+    return std::to_string(static_cast<int>(std::lround(value)));
+}
+
 }  // namespace
 
-std::optional<Eigen::Vector3d> find_up(std::span<const MapPlane> planes,
-                                       std::span<const Pose> world_from_camera, const GravityRules& rules) {
-    const std::vector<Evidence> evidence = evidence_of(planes);
-    const std::optional<Handling> handling = handling_of(world_from_camera);
-    if (evidence.empty() || !handling) return std::nullopt;
+Up up_as_told(std::span<const Eigen::Vector3d> up_world, std::span<const MapPlane> planes,
+              const std::string& by, const GravityRules& rules) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    double count = 0;
+    for (const Eigen::Vector3d& u : up_world) {
+        if (!u.allFinite() || std::abs(u.norm() - 1) > 1e-3) continue;
+        sum += u;
+        count += 1;
+    }
+    if (count == 0) return {std::nullopt, by + " said nothing yet"};
+    const double scatter_deg = degrees(std::acos(std::clamp(sum.norm() / count, -1.0, 1.0)));
+    if (scatter_deg > rules.scatter_deg)
+        return {std::nullopt, by + " says another direction each time (they scatter by " +
+                                  number(scatter_deg) + " deg in the world)"};
+    return {refined(sum.normalized(), RoomView(planes), rules), "by " + by};
+}
 
-    const double sin2_tolerance = std::pow(std::sin(radians(rules.tolerance_deg)), 2);
-    const std::vector<Eigen::Vector3d> candidates =
-        answers(evidence, *handling, std::cos(radians(rules.held_deg)));
-    std::vector<double> scores;
-    for (const Eigen::Vector3d& u : candidates) {
-        double score = handling->fit(u);
-        for (const Evidence& e : evidence)
-            score += e.weight * std::abs(agreement(e.normal, u, sin2_tolerance));
-        scores.push_back(score);
+Up find_up(std::span<const MapPlane> planes, std::span<const Pose> world_from_camera,
+           const GravityRules& rules) {
+    const RoomView room(planes);
+    const std::optional<Handling> handling = Handling::of(world_from_camera);
+    if (room.planes().empty()) return {std::nullopt, "there are no planes"};
+    if (!handling) return {std::nullopt, "no keyframe has a pose"};
+
+    const std::vector<Judged> found = judged(room, *handling, rules);
+    const Judged& best = found.front();
+    for (const Judged& other : found) {
+        const double apart_deg = degrees(angle_between(other.up, best.up));
+        if (apart_deg > rules.rival_deg && other.odds > best.odds - rules.margin)
+            return {std::nullopt, "planes and motion leave two directions " + number(apart_deg) +
+                                      " deg apart about as likely (1 to " +
+                                      number(std::exp(best.odds - other.odds)) + ")"};
     }
-    const auto best_score = std::max_element(scores.begin(), scores.end());
-    if (best_score == scores.end()) return std::nullopt;
-    const Eigen::Vector3d best = candidates[static_cast<std::size_t>(best_score - scores.begin())];
-    for (std::size_t i = 0; i < candidates.size(); ++i) {
-        const bool rival = candidates[i].dot(best) < std::cos(radians(rules.rival_deg));
-        if (rival && scores[i] > *best_score - rules.margin) return std::nullopt;
-    }
-    return refined(best, evidence, *handling, sin2_tolerance);
+    return {refined(best.up, room, rules), "by planes and motion"};
 }
 
 }  // namespace planemap::map

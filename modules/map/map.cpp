@@ -52,6 +52,7 @@ void PlaneMapper::start_from(const PlaneMap& map) {
 
 void PlaneMapper::add(const Keyframe& keyframe) {
     if (keyframes_.add(keyframe, losses_) == KeyframeStore::Arrival::kRefused) return;
+    told_.came(keyframe.id, keyframe.utime);
     place(keyframe.id);
     losses_.keyframes_unplaced += keyframes_.drop_waiting(kMaxWaiting);
     refresh();

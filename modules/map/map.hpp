@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <map>
+#include <string>
 #include <vector>
 
 #include "core/keyframe.hpp"
@@ -13,6 +14,7 @@
 #include "map/map_losses.hpp"
 #include "map/options.hpp"
 #include "map/planes.hpp"
+#include "map/told_up.hpp"
 
 namespace planemap::map {
 
@@ -56,6 +58,13 @@ class PlaneMapper {
     /// last trajectory named and this one does not was replaced by others of its place (replacements()): what
     /// it saw goes over to the nearest eight of those, see hand_over().
     void update(const KeyframeTrajectory& trajectory);
+
+    /// How the camera is mounted on a robot that stands level on average; says which way is up.
+    void hear_mount(const Pose& body_from_camera) { told_.hear_mount(body_from_camera); }
+    /// What an accelerometer read, before the keyframe of its time comes.
+    void hear(const Acceleration& reading) { told_.hear(reading); }
+    /// Where map().up is from, or why it is not known: a clause.
+    const std::string& why_up() const { return derived_.why_up(); }
 
     /// Which plane each region of each keyframe is part of, in the order in which the mapper keeps them: by
     /// plane id, -1 for none. With the same keyframes and poses, restore_ids() gives the planes of another
@@ -108,12 +117,13 @@ class PlaneMapper {
     void fold();
     void hand_over_replaced(const KeyframeTrajectory& trajectory);
     void rebuild();
-    void refresh() { derived_.refresh(planes_.estimates(), keyframes_.poses()); }
+    void refresh() { derived_.refresh(planes_.estimates(), keyframes_.poses(), told_); }
 
     MapOptions options_;
     KeyframeStore keyframes_;
     Planes planes_;
     DerivedMap derived_;
+    ToldUp told_;
     MapLosses losses_;
     std::size_t coarsened_ = 0, folded_ = 0, replaced_ = 0, rebuilds_ = 0;
     bool settled_ = true;  ///< nothing came since the last rebuild

@@ -59,6 +59,22 @@ MapShell::MapShell(messages::Bus& bus, const MapShellOptions& options)
                    status_.guard([this](const messages::RawMessage& m) { on_keyframe(m); }), 256);
     bus_.subscribe(messages::channels::kTrajectory,
                    status_.guard([this](const messages::RawMessage& m) { on_trajectory(m); }), 16);
+    bus_.subscribe(messages::channels::kCameraInfo,
+                   status_.guard([this](const messages::RawMessage& m) { on_camera(m); }), 4);
+    bus_.subscribe(messages::channels::kAcceleration,
+                   status_.guard([this](const messages::RawMessage& m) { on_acceleration(m); }), 1024);
+}
+
+void MapShell::on_acceleration(const messages::RawMessage& message) {
+    mapper_.hear(messages::from_message(messages::decode<acceleration_t>(message.bytes)));
+}
+
+void MapShell::hear(const CameraInfo& camera) {
+    if (camera.body_from_camera) mapper_.hear_mount(*camera.body_from_camera);
+}
+
+void MapShell::on_camera(const messages::RawMessage& message) {
+    hear(messages::from_message(messages::decode<camera_info_t>(message.bytes)));
 }
 
 void MapShell::on_keyframe(const messages::RawMessage& message) {
@@ -204,6 +220,10 @@ void MapShell::publish_surfaces() {
                  messages::to_message(mapper_.surfaces(), surfaces_seq_++, bus_.session()));
 }
 
+bool MapShell::is_up_missing() const {
+    return mapper_.map().up.isZero() && !mapper_.map().planes.empty();
+}
+
 /// What there is, and what keeps it from the disk.
 void MapShell::tell() {
     std::string text = std::to_string(mapper_.map().planes.size()) + " planes";
@@ -211,6 +231,7 @@ void MapShell::tell() {
     if (const std::size_t waiting = mapper_.waiting(); waiting > 0)
         text += ", " + std::to_string(waiting) + " keyframes wait for a pose";
     if (!write_error_.empty()) text += "; not written, trying every second: " + write_error_;
+    if (is_up_missing()) text += "; up is not known";
     status_.set_text(text);
 }
 
@@ -235,6 +256,8 @@ void MapShell::settle() {
 
 void MapShell::finish() {
     settle();
+    if (is_up_missing())
+        status_.remark("up", "up is not known, so no plane has a label: " + mapper_.why_up());
     if (journal_) save_poses_and_ids();
     if (!output_.empty() && unwritten_) try_write();
     if (!output_.empty() && !is_ours_ && write_error_.empty())

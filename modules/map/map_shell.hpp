@@ -31,13 +31,16 @@ struct MapShellOptions {
     bool needs_planes = false;  ///< finish() throws if the map has none
 };
 
-/// PLANEMAP_KEYFRAME and PLANEMAP_TRAJECTORY to PLANEMAP_MAP. Throws std::runtime_error naming the file for a
+/// PLANEMAP_KEYFRAME and PLANEMAP_TRAJECTORY to PLANEMAP_MAP; PLANEMAP_CAMERA_INFO and PLANEMAP_ACCELERATION
+/// tell which way is up. Throws std::runtime_error naming the file for a
 /// map to start from that cannot be read, and for an output folder that cannot be one.
 class MapShell : public messages::Shell {
   public:
     MapShell(messages::Bus& bus, const MapShellOptions& options);
 
     messages::ModuleStatus& status() override { return status_; }
+    /// The camera, where it does not come off the bus: how it is mounted says which way is up.
+    void hear(const CameraInfo& camera);
     /// Writes the map every few seconds, and repeats it on the bus when a second has passed without one.
     int poll() override;
     void finish() override;
@@ -49,6 +52,8 @@ class MapShell : public messages::Shell {
   private:
     void on_keyframe(const messages::RawMessage& message);
     void on_trajectory(const messages::RawMessage& message);
+    void on_camera(const messages::RawMessage& message);
+    void on_acceleration(const messages::RawMessage& message);
     void resume();
     void tend_journal();
     void save_poses_and_ids();
@@ -56,6 +61,7 @@ class MapShell : public messages::Shell {
     void publish();
     void publish_surfaces();
     void tell();
+    bool is_up_missing() const;
     void try_output();
     void try_write();
     void write();

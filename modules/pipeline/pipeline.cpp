@@ -22,6 +22,7 @@ Pipeline::Pipeline(messages::Bus& bus, const PipelineOptions& options)
     }
     if ((graph_ || given_poses_) && options.with_map)
         map_ = std::make_unique<map::MapShell>(bus, options.map);
+    if (map_ && options.camera) map_->hear(*options.camera);
     if (options.with_octomap)
         octomap_ = std::make_unique<octomap::OctomapShell>(bus, decoder_, options.octomap);
     bus_.subscribe(messages::channels::kOdometry, [this, keep = options.keep_estimates](

@@ -78,6 +78,39 @@ TEST(DerivedMap, TakesTheLabelsOfAnEarlierMapById) {
     EXPECT_EQ(derived.map().planes[1].label, PlaneLabel::kWall);
 }
 
+TEST(DerivedMap, KeepsTheUpOfTheMapToStartFromUntilItIsFound) {
+    DerivedMap derived = derived_map();
+    PlaneMap earlier;
+    earlier.up = {0, 0, -1};
+    derived.start_from(earlier);
+    std::vector<PlaneEstimate> estimates{drawn_estimate_of(wall_at(0, 0, 3), 0)};
+    const Pose aside(Eigen::AngleAxisd(0.8, Eigen::Vector3d::UnitX()));
+    derived.refresh(estimates, {{0, aside}});
+    EXPECT_EQ(derived.map().up, earlier.up);
+    EXPECT_EQ(derived.why_up(), "by the map to start from");
+}
+
+TEST(DerivedMap, WhatIsToldGoesBeforeWhatIsFoundAndAContradictionIsSaid) {
+    DerivedMap derived = derived_map();
+    std::vector<PlaneEstimate> estimates{drawn_estimate_of(wall_at(0, 0, 3), 0)};
+    std::map<int, Pose> poses;  // of a camera that looks around
+    for (int i = -5; i <= 5; ++i) poses[i + 5] = Pose(Eigen::AngleAxisd(0.2 * i, Eigen::Vector3d::UnitY()));
+    derived.refresh(estimates, poses);
+    EXPECT_LT((derived.map().up - Eigen::Vector3f(0, -1, 0)).norm(), 0.1f);
+    EXPECT_EQ(derived.map().planes[0].label, PlaneLabel::kVertical);
+    ToldUp told;
+    for (const auto& [id, pose] : poses) {
+        told.hear({1000000 * id, -9.8 * (pose.linear().transpose() * Eigen::Vector3d::UnitZ())});
+        told.came(id, 1000000 * id);
+    }
+    derived.refresh(estimates, poses, told);
+    EXPECT_LT((derived.map().up - Eigen::Vector3f(0, 0, -1)).norm(), 1e-5f);
+    EXPECT_EQ(derived.map().planes[0].label, PlaneLabel::kFloor);
+    EXPECT_EQ(derived.why_up(),
+              "by the accelerometer; planes and motion say another direction, 90 deg off: is that how it is "
+              "mounted?");
+}
+
 TEST(DerivedMap, OfNothing) {
     DerivedMap derived = derived_map();
     std::vector<PlaneEstimate> none;

@@ -50,7 +50,7 @@ std::vector<Rectangle> furnished() {
                                                        facing_down(level(0, 0, 2.2, 0.3, 0.3)),
                                                        facing_down(level(1, 1, 0.72, 0.8, 0.5))};
 }
-constexpr const char* kFurnished = "wwwwfchhowohh";
+constexpr const char* kFurnished = "wwwwfchhvvohh";
 
 TEST(LabelPlanes, OfAFurnishedRoomInAnyWorldAndAtAnyPitch) {
     test::Random random(1);
@@ -139,6 +139,81 @@ TEST(LabelPlanes, AFewCentimetresOfAMirrorBelowTheFloorDoNotMatter) {
               std::string(kFurnished) + "h");
 }
 
+/// Each plane seen by so many keyframes.
+PlaneMap seen_by(const std::vector<Rectangle>& room, const std::vector<int>& keyframes) {
+    PlaneMap map = scene::map_of(room);
+    for (std::size_t i = 0; i < keyframes.size(); ++i)
+        map.planes[i].keyframes = static_cast<std::int16_t>(keyframes[i]);
+    return map;
+}
+
+TEST(LabelPlanes, AGhostBelowTheFloorThatOneLookSawIsNoFloor) {
+    std::vector<Rectangle> planes = scene::walls(6, 4);
+    planes.push_back(level(0, 0, 0, 6, 3));
+    planes.push_back(level(0, 0, -1.5, 1.8, 1));
+    PlaneMap map = seen_by(planes, {5, 5, 5, 5, 39, 1});
+    label_planes(map, scene::looking_around(0.3, 0.1));
+    EXPECT_EQ(labels(map), "wwwwfh");
+}
+
+TEST(LabelPlanes, TwoLevelsAStepApartAreBothFloors) {
+    const std::vector<Rectangle> planes =
+        scene::walls(4, 3) + std::vector<Rectangle>{level(-3, 0, 0, 0.4, 1.6), level(1, 0, 0.18, 3, 2.5),
+                                                    upright(-2, 0, 0, 180 * kDegree, 2.5, 0.18),
+                                                    level(2, 1, 0.45, 0.5, 0.3)};
+    EXPECT_EQ(labels(named(planes, scene::looking_around(1.5, 0.4))), "wwwwffvh");
+}
+
+TEST(LabelPlanes, ACeilingThatHangsLowerInPartIsOneAndALampIsNot) {
+    const std::vector<Rectangle> planes =
+        scene::walls(3, 2) + std::vector<Rectangle>{level(0, 0, 0, 3, 2),
+                                                    facing_down(level(-1, 0, 2.5, 2, 2)),
+                                                    facing_down(level(2, 0, 2.25, 1, 2)),
+                                                    facing_down(level(0, 0, 2.1, 0.3, 0.3)),
+                                                    level(1, 1, 0.75, 0.8, 0.5),
+                                                    level(-1, 1, 0.75, 0.8, 0.5)};
+    EXPECT_EQ(labels(named(planes, scene::looking_around(1.4, 0.1))), "wwwwfcchhh");
+}
+
+TEST(LabelPlanes, TheLowestShelfIsNotAPieceOfTheFloor) {
+    const std::vector<Rectangle> planes =
+        scene::walls(3, 2) + std::vector<Rectangle>{level(0, 0, 0, 2, 2), level(-2.5, 0, 0.08, 0.2, 0.12)};
+    EXPECT_EQ(labels(named(planes, scene::looking_around(1.4, 0.4))), "wwwwfh");
+}
+
+TEST(LabelPlanes, AFaceIsFurnitureWhereTheWallIsSeenOverItOrATopGoesBackFromIt) {
+    const double facing = 90 * kDegree;  // as the wall at y = -2 does
+    const auto of = [&](const std::vector<Rectangle>& things) {
+        return labels(named(scene::walls(3, 2) + std::vector<Rectangle>{level(0, 0, 0, 3, 2)} + things,
+                            scene::looking_around(1.4, 0.3)))
+            .substr(5);
+    };
+    EXPECT_EQ(of({upright(1, -1.4, 0, facing, 1, 2.1)}), "v") << "a tall cupboard";
+    EXPECT_EQ(of({upright(1, -1.4, 0, facing, 1, 2.5)}), "w") << "one as high as the wall";
+    EXPECT_EQ(of({upright(1, -1.9, 0, facing, 1, 2.1)}), "w") << "a door, or the same wall a little off";
+    EXPECT_EQ(of({upright(1, 0.5, 0, facing, 1.5, 1.4)}), "w") << "a partition in the room";
+    EXPECT_EQ(of({upright(1, 0.5, 0, facing, 1.5, 1.4), level(1, 0.25, 1.4, 0.75, 0.25)}), "vh")
+        << "a sideboard in the room";
+    EXPECT_EQ(of({upright(1, 0.5, 0, facing, 0.6, 0.7)}), "v") << "a box";
+    EXPECT_EQ(of({upright(1, 0.5, 0, facing, 0.4, 1.6)}), "v") << "the side of a cupboard";
+}
+
+TEST(LabelPlanes, DoNotDependOnHowTheCameraIsHeld) {
+    std::vector<Rectangle> room =
+        scene::walls(3, 2) +
+        std::vector<Rectangle>{level(0, 0, 0, 3, 2), facing_down(level(0, 0, 2.5, 3, 2))};
+    for (const double x : {-2, 0, 2})
+        room = room + std::vector<Rectangle>{level(x, 1, 0.75, 0.8, 0.5),
+                                             upright(x, -1.4, 0, 90 * kDegree, 1.2, 0.9),
+                                             level(x, -1.7, 0.9, 0.6, 0.3)};
+    test::Random random(2);
+    for (const double roll : {0, 90, 180, 270}) {
+        std::vector<Pose> poses = scene::looking_around(1.4, 0.3);
+        for (Pose& pose : poses) pose.rotate(Eigen::AngleAxisd(roll * kDegree, Eigen::Vector3d::UnitZ()));
+        EXPECT_EQ(labels(named(room, poses, random.pose())), "wwwwfchvhhvhhvh") << roll;
+    }
+}
+
 TEST(LabelPlanes, OfNothing) {
     PlaneMap map;
     label_planes(map, scene::looking_around(1.4, 0));
@@ -160,7 +235,7 @@ TEST(LabelPlanes, LeavesOutWhatIsNotFinite) {
     std::vector<Pose> poses = scene::looking_around(1.4, 0.3);
     poses[0].translation().setConstant(std::numeric_limits<double>::quiet_NaN());
     label_planes(map, poses);
-    EXPECT_EQ(labels(map), "uwwwfcuuouohh");
+    EXPECT_EQ(labels(map), "uwwwfcuuvuohh");
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <numbers>
 #include <thread>
 
 #include "core/files.hpp"
@@ -55,6 +56,34 @@ TEST_F(MapShellTest, PublishesTheMapAmongCorruptMessagesAndWritesItAsALog) {
     EXPECT_EQ(event.channel, messages::channels::kMap);
     EXPECT_EQ(messages::from_message(messages::decode<plane_map_t>(event.bytes)).planes.size(), 2u);
     EXPECT_FALSE(log.next(event));
+}
+
+TEST_F(MapShellTest, HearsWhichWayIsUp) {
+    MapShell shell(bus_, {});
+    CameraInfo camera = test::sample_camera();
+    camera.body_from_camera = Pose(Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitX()));
+    const auto maps = collect<plane_map_t>(messages::channels::kMap);
+    publish_corrupt(messages::channels::kAcceleration, messages::to_message(Acceleration{5, {0, -9.8, 0}}));
+    bus_.publish(messages::channels::kCameraInfo, messages::to_message(camera, 5, 0));
+    bus_.publish(messages::channels::kKeyframe, messages::to_message(test::sample_keyframe(), 0));
+    bus_.publish(messages::channels::kTrajectory, messages::to_message(trajectory(), 0));
+    bus_.drain();
+    const PlaneMap map = messages::from_message(maps->back());
+    EXPECT_LT((map.up - Eigen::Vector3f(0, 0, -1)).norm(), 0.1f);
+    EXPECT_EQ(shell.mapper().why_up().find("by camera.json's body_from_camera"), 0u)
+        << shell.mapper().why_up();
+    // The accelerometer goes before it.
+    Keyframe next = test::sample_keyframe();
+    next.id = 4;
+    next.utime += 1000000;
+    KeyframeTrajectory both = trajectory();
+    both.keyframes.push_back({4, next.utime, Pose::Identity()});
+    bus_.publish(messages::channels::kAcceleration,
+                 messages::to_message(Acceleration{next.utime - 1000, {0, -9.8, 0}}));
+    bus_.publish(messages::channels::kKeyframe, messages::to_message(next, 1));
+    bus_.publish(messages::channels::kTrajectory, messages::to_message(both, 1));
+    bus_.drain();
+    EXPECT_EQ(shell.mapper().why_up().find("by the accelerometer"), 0u) << shell.mapper().why_up();
 }
 
 TEST_F(MapShellTest, StartsFromAMapAndKeepsAnEarlierOneUntilItHasOne) {

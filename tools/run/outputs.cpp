@@ -4,6 +4,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/files.hpp"
@@ -88,6 +89,15 @@ std::vector<Result> essential_results(pipeline::Pipeline& pipeline) {
 
 namespace {
 
+/// Unit vector, world; null if it is not known.
+Json up_of(const PlaneMap& map) {
+    if (map.up.isZero()) return nullptr;
+    Json direction = Json::array();
+    for (int i = 0; i < 3; ++i)
+        direction.push_back(std::round(1e6 * static_cast<double>(map.up[i])) / 1e6 + 0.0);
+    return direction;
+}
+
 Json report_of(const std::string& input_name, const Input& input, pipeline::Pipeline& pipeline,
                const DepthWatch& depth, const RunClock& clock, const Json& about) {
     const PlaneMap& map = pipeline.map().mapper().map();
@@ -104,6 +114,7 @@ Json report_of(const std::string& input_name, const Input& input, pipeline::Pipe
     report["keyframes"] = keyframes.keyframes.size();
     report["loop_closures"] = keyframes.loop_closures;
     report["planes"] = map.planes.size();
+    report["up"] = {{"direction", up_of(map)}, {"why", pipeline.map().mapper().why_up()}};
     report["losses"] = losses_of(pipeline);
     report["wall_s"] = clock.wall_s();
     report["cpu_s"] = clock.cpu_s();

@@ -55,6 +55,12 @@ void add_tracking(const Json& report, std::string& out) {
     out += count("frames") + " frames: " + count("tracked") + " tracked, " + count("lost") + " lost, " +
            count("broken") + " broken. " + count("keyframes") + " keyframes, " + count("loop_closures") +
            " loop closures, " + count("planes") + " planes.\n\n";
+    if (report.contains("up")) {
+        const Json& up = report.at("up");
+        const std::string why = up.at("why").get<std::string>();
+        out += up.at("direction").is_null() ? "Up is not known: " + why + ".\n\n"
+                                            : "Up is known " + why + ".\n\n";
+    }
     if (report.value("interrupted", false)) out += "The run ended before the end of its input.\n\n";
 }
 
