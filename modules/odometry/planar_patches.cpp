@@ -74,7 +74,8 @@ PlanarPatches::PlanarPatches(const DepthImage& depth, const PinholeCamera& camer
         for (int column = 0; column < planes_.width; ++column) {
             CellSums sums;
             for (int j = 0; j < cell_px; j += 2) {
-                const std::uint16_t* readings = depth.row(row * cell_px + j) + std::ptrdiff_t{column} * cell_px;
+                const std::uint16_t* readings =
+                    depth.row(row * cell_px + j) + std::ptrdiff_t{column} * cell_px;
                 for (int i = 0; i < cell_px; i += 2) {
                     const double z = info.metres(readings[i]);
                     if (!is_valid_depth(readings[i]) || !is_trusted(z, info)) continue;
