@@ -65,7 +65,7 @@ void add_drift_options(OptionList& list, GraphOptions& options) {
 void add_landmark_options(OptionList& list, GraphOptions& options) {
     using enum Audience;
     list.add("landmark_angle_deg", options.landmark_angle_deg, greater_than(0),
-             "Largest angle between a region and the landmark that it is taken for");
+             "Largest angle between a region and the landmark that it is taken for", kExpert);
     list.add("landmark_distance_m", options.landmark_distance_m, greater_than(0),
              "Largest distance between the planes of a region and of the landmark that it is taken for");
     list.add("landmark_gap_m", options.landmark_gap_m, at_least(0),
