@@ -157,9 +157,9 @@ void Landmarks::merge() {
         for (int j = 0; j < i; ++j) {
             if (!same_.stands(j)) continue;
             Landmark &older = landmarks_[at(j)], &newer = landmarks_[at(i)];
+            if (older.is_surface && newer.is_surface) continue;  // the map knows them for two
             Candidate candidate{newer.plane, newer.box, newer.box.face()};
             for (auto& p : candidate.points) p = newer.plane.project(p);  // the plane moved, the box did not
-            if (older.is_surface && newer.is_surface) continue;           // the map knows them for two
             if (!fits(candidate, older)) continue;
             older.box = united(older.box, newer.box);
             older.sightings += newer.sightings;
