@@ -63,7 +63,7 @@ class SurfaceUnion {
     std::vector<std::size_t> run() {
         std::vector<std::size_t> all(planes_.estimates().size());
         for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
-        const std::vector<std::size_t> now = planes_.merge(
+        std::vector<std::size_t> now = planes_.merge(
             all, rules_.angle_rad, [this](std::size_t a, std::size_t b) { return misfit(a, b); },
             [this](std::size_t into, std::size_t from) { joined(into, from); });
         for (SeenRegion& region : seen_)
