@@ -74,6 +74,7 @@ std::vector<Eigen::Vector3d> corners_of(const MapPlane& plane) {
         });
     const Pose world_from_plane = plane.world_from_plane();
     std::vector<Eigen::Vector3d> corners;
+    corners.reserve(outermost.size());
     for (const Eigen::Vector2d& p : outermost)
         corners.emplace_back(world_from_plane * Eigen::Vector3d(p.x(), p.y(), 0));
     return corners;
