@@ -66,8 +66,8 @@ void RegistrationCheck::vote(const GrayImage& gray, int u, int v) {
     constexpr std::size_t kWidth = 2 * kReach + 1;
     std::array<int, kWidth> steps{};
     double sum = 0;
-    for (int d = -kReach; d <= kReach; ++d)
-        sum += steps[static_cast<std::size_t>(d + kReach)] = step(gray, u + d, v);
+    for (std::size_t i = 0; i < kWidth; ++i)
+        sum += steps[i] = step(gray, u - kReach + static_cast<int>(i), v);
     const double mean = sum / kWidth + 6;  // of noise alone
     const auto column = static_cast<std::size_t>(u * kColumns / gray.width);
     for (std::size_t i = 0; i < kWidth; ++i) steps_[column * kWidth + i] += std::min(steps[i] / mean, 5.0);
@@ -83,9 +83,10 @@ double RegistrationCheck::steps_at(double shift_px, double stretch_px) const {
         const double x = (column + 0.5) / kColumns - 0.5;
         const int at = static_cast<int>(std::lround(shift_px + stretch_px * x));
         if (std::abs(at) + kBlur_px > kReach) continue;
-        for (int d = at - kBlur_px; d <= at + kBlur_px; ++d)
-            sum +=
-                steps_[static_cast<std::size_t>(column * (2 * kReach + 1) + d + kReach)] / (2 * kBlur_px + 1);
+        for (int d = at - kBlur_px; d <= at + kBlur_px; ++d) {
+            const int index = column * (2 * kReach + 1) + d + kReach;
+            sum += steps_[static_cast<std::size_t>(index)] / (2 * kBlur_px + 1);
+        }
         count += counts_[static_cast<std::size_t>(column)];
     }
     return count > 0 ? sum / count : 0;
