@@ -89,6 +89,7 @@ KeyframeStore::Arrival KeyframeStore::add(const Keyframe& keyframe, MapLosses& l
     newest_id_ = std::max(newest_id_, keyframe.id);
     const std::vector<std::size_t> usable = usable_regions(keyframe, losses);
     std::vector<PlanarRegion> regions;
+    regions.reserve(usable.size());
     for (const std::size_t i : usable) regions.push_back(keyframe.regions[i]);
     StoredKeyframe& kept = keyframes_[keyframe.id] = stored(keyframe.utime, regions);
     for (std::size_t i = 0; i < usable.size(); ++i) kept.regions[i].number = static_cast<int>(usable[i]);
