@@ -44,14 +44,14 @@ camera_info_t to_message(const CameraInfo& camera, std::int64_t utime, std::int3
                          std::int64_t session = 0);
 CameraInfo from_message(const camera_info_t& message);
 
+acceleration_t to_message(const Acceleration& reading);
+Acceleration from_message(const acceleration_t& message);
+
 /// The planar regions of one depth image, camera frame.
 struct FrameRegions {
     std::int64_t utime = 0;  ///< of the depth image
     std::vector<PlanarRegion> regions;
 };
-acceleration_t to_message(const Acceleration& reading);
-Acceleration from_message(const acceleration_t& message);
-
 planar_regions_t to_message(const FrameRegions& regions, std::int32_t seq, std::int64_t session = 0);
 FrameRegions from_message(const planar_regions_t& message);
 

@@ -10,6 +10,7 @@
 #include <bot_core/sensor_status_t.hpp>
 #include <cstdio>
 #include <kinect/frame_msg_t.hpp>
+#include <planemap/acceleration_t.hpp>
 #include <planemap/camera_info_t.hpp>
 #include <planemap/keyframe_t.hpp>
 #include <planemap/map_size_t.hpp>
@@ -19,6 +20,8 @@
 #include <planemap/plane_map_t.hpp>
 #include <planemap/surfaces_t.hpp>
 #include <planemap/trajectory_t.hpp>
+#include <vs/object_collection_t.hpp>
+#include <vs/point3d_list_collection_t.hpp>
 
 #include "messages/decode.hpp"
 
@@ -53,8 +56,9 @@ std::string type_name(std::uint64_t fingerprint) {
         add_names<bot_core::image_t, bot_core::images_t, bot_core::pointcloud_t, bot_core::pose_t,
                   bot_core::raw_t, bot_core::rigid_transform_t, bot_core::sensor_status_t>("bot_core", all);
         add_names<kinect::frame_msg_t>("kinect", all);
-        add_our_names<camera_info_t, keyframe_t, map_size_t, module_status_t, odometry_t, planar_regions_t,
-                      plane_map_t, surfaces_t, trajectory_t>(all);
+        add_names<vs::object_collection_t, vs::point3d_list_collection_t>("vs", all);
+        add_our_names<acceleration_t, camera_info_t, keyframe_t, map_size_t, module_status_t, odometry_t,
+                      planar_regions_t, plane_map_t, surfaces_t, trajectory_t>(all);
         return all;
     }();
     const auto known = names.find(fingerprint);

@@ -161,9 +161,10 @@ int SensorShell::poll() {
     return 0;
 }
 
-/// A recording whose clock was set, or that was stopped for a while, goes on at once.
+/// A recording whose clock was set, or that was stopped for a while, goes on at once. By the stamps that it
+/// has, whatever frames are published with.
 bool SensorShell::jumps() const {
-    return frames_ > 0 && (frame_.utime < last_utime_ || frame_.utime - last_utime_ > kLongestPauseUs);
+    return frames_ > 0 && (frame_.utime < played_utime_ || frame_.utime - played_utime_ > kLongestPauseUs);
 }
 
 /// As if the frame had been taken at this time.
