@@ -78,22 +78,18 @@ void PlaneMapper::update(const KeyframeTrajectory& trajectory) {
     refresh();
 }
 
-std::map<int, std::vector<int>> PlaneMapper::planes_of_regions() const {
-    std::map<int, std::vector<int>> planes;
-    for (const auto& [id, keyframe] : keyframes_.keyframes())
-        for (const StoredRegion& region : keyframe.regions) planes[id].push_back(region.plane);
-    return planes;
-}
-
-void PlaneMapper::restore_ids(const std::map<int, std::vector<int>>& planes_of_regions) {
-    for (auto& [id, keyframe] : keyframes_.keyframes()) {
-        const auto known = planes_of_regions.find(id);
-        const bool fits = known != planes_of_regions.end() && known->second.size() == keyframe.regions.size();
-        for (std::size_t i = 0; i < keyframe.regions.size(); ++i)
-            keyframe.regions[i].plane = fits ? known->second[i] : -1;
+void PlaneMapper::restore_ids(const Surfaces& surfaces) {
+    for (auto& [id, keyframe] : keyframes_.keyframes())
+        for (StoredRegion& region : keyframe.regions) region.plane = -1;
+    for (const KeyframeSurfaces& of : surfaces.keyframes) {
+        for (const int plane : of.planes) planes_.reserve_id(plane);
+        const auto known = keyframes_.keyframes().find(of.id);
+        if (known == keyframes_.keyframes().end()) continue;
+        for (StoredRegion& region : known->second.regions) {
+            const auto number = static_cast<std::size_t>(region.number);
+            if (region.number >= 0 && number < of.planes.size()) region.plane = of.planes[number];
+        }
     }
-    for (const auto& [id, planes] : planes_of_regions)
-        for (const int plane : planes) planes_.reserve_id(plane);
     rebuild();
     refresh();
 }

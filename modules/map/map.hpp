@@ -66,11 +66,9 @@ class PlaneMapper {
     /// Where map().up is from, or why it is not known: a clause.
     const std::string& why_up() const { return derived_.why_up(); }
 
-    /// Which plane each region of each keyframe is part of, in the order in which the mapper keeps them: by
-    /// plane id, -1 for none. With the same keyframes and poses, restore_ids() gives the planes of another
-    /// mapper their ids by it.
-    std::map<int, std::vector<int>> planes_of_regions() const;
-    void restore_ids(const std::map<int, std::vector<int>>& planes_of_regions);
+    /// Gives planes the ids that they had for another mapper with the same keyframes and poses, by what that
+    /// says in surfaces().
+    void restore_ids(const Surfaces& surfaces);
 
     /// Brings the map into the form that does not depend on the order of arrival; for the end of a run, or a
     /// pause. Does nothing if nothing came since the last rebuild.

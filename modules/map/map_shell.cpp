@@ -10,7 +10,6 @@
 
 #include "map/earlier_map.hpp"
 #include "map/map_file.hpp"
-#include "map/region_planes.hpp"
 #include "messages/channels.hpp"
 #include "messages/convert.hpp"
 #include "messages/decode.hpp"
@@ -22,6 +21,7 @@ constexpr std::int64_t kWritePeriodUs = 5000000;
 constexpr std::int64_t kSavePeriodUs = 1000000;   ///< of poses and plane ids to the journal
 constexpr std::int64_t kRetryPeriodUs = 1000000;  ///< after a write that failed
 constexpr const char* kFile = "plane_map.lcmlog";
+constexpr const char* kEarlierIds = "PLANEMAP_REGION_PLANES";  ///< in journals before PLANEMAP_SURFACES
 
 /// Whether an error says that a disk has no room or fails, which may pass, and not that a path is wrong.
 bool is_disk_trouble(const std::error_code& error) {
@@ -109,16 +109,22 @@ void MapShell::on_trajectory(const messages::RawMessage& message) {
 /// Takes keyframes, their poses and the planes' ids from the process before.
 void MapShell::resume() {
     for (const std::string& complaint : journal_->complaints()) spdlog::warn("map: {}", complaint);
-    std::vector<std::uint8_t> trajectory, ids;
+    const std::string file = journal_->file().string();
+    std::vector<std::uint8_t> trajectory;
+    Surfaces surfaces;
     std::optional<keyframe_t> newest;
     std::vector<std::uint8_t> newest_bytes;
     journal_->replay([&](const messages::LogEvent& event) {
         if (event.channel == messages::channels::kTrajectory) {
             trajectory = event.bytes;
-        } else if (event.channel == kRegionPlanes) {
-            ids = event.bytes;
+        } else if (event.channel == kEarlierIds) {
+            bus_.complaints().add(file + ": ids of planes in an earlier format: planes get new ones");
         } else {
             try {
+                if (event.channel == messages::channels::kSurfaces) {
+                    surfaces = messages::from_message(messages::decode<surfaces_t>(event.bytes));
+                    return;
+                }
                 keyframe_t received = messages::decode<keyframe_t>(event.bytes);
                 const Keyframe keyframe = messages::from_message(received);
                 watch_.came(keyframe.id, keyframe.previous_id, keyframe.utime);
@@ -126,7 +132,7 @@ void MapShell::resume() {
                 newest = std::move(received);
                 newest_bytes = event.bytes;
             } catch (const messages::MessageError& error) {
-                bus_.complaints().add(journal_->file().string() + ": a keyframe left out: " + error.what());
+                bus_.complaints().add(file + ": a message left out: " + error.what());
             }
         }
     });
@@ -139,12 +145,12 @@ void MapShell::resume() {
     trajectory_guard_.resume(last.session, last.seq, std::nullopt, trajectory);
     const KeyframeTrajectory poses = messages::from_message(last);
     mapper_.update(poses);
-    mapper_.restore_ids(decode_region_planes(ids));
+    mapper_.restore_ids(surfaces);
     watch_.named(poses, messages::now_us());
     is_ours_ = true;  // what lies in the output folder is this map, as it was
     tell_losses();
     spdlog::info("map: goes on with {} planes of {} keyframes of {}", mapper_.map().planes.size(),
-                 mapper_.keyframes(), journal_->file().string());
+                 mapper_.keyframes(), file);
     publish();
 }
 
@@ -157,7 +163,7 @@ void MapShell::tend_journal() {
         save_poses_and_ids();
         std::int64_t last = -1;  // of the poses, and of the ids, only the last ones count
         journal_->replay([&](const messages::LogEvent& event) {
-            if (event.channel == kRegionPlanes) last = event.number;
+            if (event.channel == messages::channels::kSurfaces) last = event.number;
         });
         journal_->compact([&](const messages::LogEvent& event) {
             if (event.channel == messages::channels::kKeyframe)
@@ -171,7 +177,8 @@ void MapShell::tend_journal() {
 void MapShell::save_poses_and_ids() {
     if (trajectory_.empty()) return;
     journal_->add(messages::channels::kTrajectory, trajectory_);
-    journal_->add(kRegionPlanes, encode_region_planes(mapper_.planes_of_regions()));
+    journal_->add(messages::channels::kSurfaces, messages::to_bytes(messages::to_message(
+                                                     mapper_.surfaces(), surfaces_seq_, bus_.session())));
     trajectory_.clear();
     saved_us_ = messages::now_us();
 }

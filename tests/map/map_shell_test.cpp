@@ -11,6 +11,7 @@
 
 #include "core/files.hpp"
 #include "map/map_file.hpp"
+#include "messages/journal.hpp"
 #include "messages/log.hpp"
 #include "messages/sample_messages.hpp"
 #include "messages/session.hpp"
@@ -301,6 +302,23 @@ TEST_F(MapShellTest, AnOutputThatCannotBeWrittenIsAnErrorAtOnce) {
 }
 
 /// As after a SIGKILL: nothing is told to finish.
+TEST_F(MapShellTest, OfAJournalWhatIsDamagedOrOfEarlierPlanemapsIsLeftOutAndSaid) {
+    MapShellOptions options;
+    options.journal = folder_ / "state/map.journal";
+    {
+        messages::Journal journal(options.journal);
+        const auto bytes = [](const auto& message) { return messages::to_bytes(message); };
+        journal.add(messages::channels::kKeyframe,
+                    bytes(messages::to_message(test::sample_keyframe(), 0, 7)));
+        journal.add(messages::channels::kTrajectory, bytes(messages::to_message(trajectory(), 0, 8)));
+        journal.add("PLANEMAP_REGION_PLANES", std::vector<std::uint8_t>(16, 0));
+        journal.add(messages::channels::kSurfaces, std::vector<std::uint8_t>(16, 0x7f));
+    }
+    MapShell shell(bus_, options);
+    EXPECT_EQ(shell.mapper().map().planes.size(), 2u);
+    EXPECT_EQ(bus_.complaints().count(), 2);
+}
+
 TEST_F(MapShellTest, AProcessThatIsStartedAgainGoesOnWithItsMapAndDoublesNothing) {
     MapShellOptions options;
     options.journal = folder_ / "state/map.journal";

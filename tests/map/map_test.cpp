@@ -11,6 +11,7 @@
 #include <set>
 
 #include "core/scene.hpp"
+#include "messages/sample_messages.hpp"
 
 namespace planemap::map {
 namespace {
@@ -738,6 +739,40 @@ TEST(MapOptions, NamesAllBadFields) {
         EXPECT_THAT(error.what(), HasSubstr("merge_angle_deg"));
         EXPECT_THAT(error.what(), HasSubstr("outline_cell_m"));
     }
+}
+
+/// Two keyframes that see a wall each, which get their ids in the order in which they come.
+TEST(PlaneMapper, SurfacesGiveThePlanesOfAnotherMapperTheirIds) {
+    Keyframe first = test::sample_keyframe(), second = test::sample_keyframe();
+    first.regions = {test::sample_region()};
+    second.regions = {test::sample_region(1)};
+    second.id = first.id + 1;
+    KeyframeTrajectory trajectory;
+    trajectory.keyframes = {{first.id, first.utime, Pose::Identity()},
+                            {second.id, second.utime, Pose::Identity()}};
+    PlaneMapper one, other;
+    one.update(trajectory);
+    one.add(second);
+    one.add(first);
+    other.update(trajectory);
+    other.add(first);
+    other.add(second);
+    ASSERT_EQ(one.map().planes.size(), 2u);
+    ASSERT_EQ(other.map().planes.size(), 2u);
+    const auto d_of = [](const PlaneMapper& mapper, std::size_t i) {
+        return mapper.map().planes[i].center.z();
+    };
+    ASSERT_NE(d_of(one, 0), d_of(other, 0)) << "the test needs other ids";
+    other.restore_ids(one.surfaces());
+    for (std::size_t i = 0; i < 2; ++i) {
+        EXPECT_EQ(other.map().planes[i].id, one.map().planes[i].id);
+        EXPECT_EQ(d_of(other, i), d_of(one, i));
+    }
+    Keyframe third = test::sample_keyframe();
+    third.regions = {test::sample_region(2)};
+    third.id = second.id + 1;
+    other.add(third, Pose::Identity());
+    EXPECT_EQ(other.map().planes.back().id, 2) << "no id twice";
 }
 
 }  // namespace
