@@ -33,7 +33,7 @@ AdjacencyRules adjacency_rules(const MapOptions& options) {
 
 }  // namespace
 
-PlaneMapper::PlaneMapper(MapOptions options)
+PlaneMapper::PlaneMapper(const MapOptions& options)
     : options_(validated(options)),
       keyframes_(options.max_extent_m),
       planes_(options),

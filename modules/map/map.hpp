@@ -37,7 +37,7 @@ namespace planemap::map {
 class PlaneMapper {
   public:
     /// Throws std::invalid_argument for bad options.
-    explicit PlaneMapper(MapOptions options = {});
+    explicit PlaneMapper(const MapOptions& options = {});
 
     /// Starts from a finished map, in its world frame: its planes keep their ids and grow on. Call it first.
     /// Planes that are larger than max_extent_m, or further out than 100 km, count in rejected(). The shapes
