@@ -43,6 +43,18 @@ void check(const PinholeCamera& camera, const std::string& name, FieldErrors& er
                    range_text(Limits::kLeastAspect, Limits::kMostAspect, ""));
 }
 
+void check(const DepthCorrection& correction, FieldErrors& errors) {
+    constexpr double kMost = DepthCorrection::kMost_per_m;
+    for (std::size_t i = 0; i < DepthCorrection::kNodes; ++i) {
+        const double offset = correction.offsets[i], sigma = correction.sigmas[i];
+        if (!(std::abs(offset) <= kMost))
+            errors.require(false, "depth_correction.offsets_per_m", offset,
+                           range_text(-kMost, kMost, " per m"));
+        if (!(sigma >= 0 && sigma <= kMost))
+            errors.require(false, "depth_correction.sigmas_per_m", sigma, range_text(0, kMost, " per m"));
+    }
+}
+
 /// That 16 bits reach into the depth range.
 void check_units(const CameraInfo& camera, FieldErrors& errors) {
     using Limits = CameraLimits;
@@ -110,6 +122,7 @@ void CameraInfo::validate() const {
                    "a rigid transform");
     errors.require(!body_from_camera || is_valid(*body_from_camera), "body_from_camera",
                    "not a rigid transform", "a rigid transform");
+    if (depth_correction) check(*depth_correction, errors);
     check_units(*this, errors);
     check_depth(noise, depth_min_m, depth_max_m, errors);
     errors.throw_if_any();
@@ -119,7 +132,7 @@ bool operator==(const CameraInfo& a, const CameraInfo& b) {
     return a.serial == b.serial && a.depth == b.depth && a.color == b.color && a.registered == b.registered &&
            a.color_from_depth.matrix() == b.color_from_depth.matrix() &&
            a.depth_units_per_metre == b.depth_units_per_metre && a.depth_min_m == b.depth_min_m &&
-           a.depth_max_m == b.depth_max_m && a.noise == b.noise &&
+           a.depth_max_m == b.depth_max_m && a.noise == b.noise && a.depth_correction == b.depth_correction &&
            a.body_from_camera.has_value() == b.body_from_camera.has_value() &&
            a.body_from_camera.value_or(Pose::Identity()).matrix() ==
                b.body_from_camera.value_or(Pose::Identity()).matrix();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -53,6 +55,21 @@ struct DepthNoise {
     friend bool operator==(const DepthNoise&, const DepthNoise&) = default;
 };
 
+/// What the readings of a sensor are off by, smoothly over the image: true inverse depth is the sensed one
+/// plus an offset, so that the error of depth grows with the square of the range (Teichman, Miller and Thrun,
+/// RSS 2013, found it so for the Kinect and the Xtion). Offsets at kColumns x kRows nodes, row by row from
+/// the depth image's upper left corner to its lower right one, bilinear between them; see
+/// depth_correction.hpp.
+struct DepthCorrection {
+    static constexpr std::size_t kColumns = 5, kRows = 4, kNodes = kColumns * kRows;
+    static constexpr double kMost_per_m = 0.1;  ///< of an offset: 40 cm at 2 m
+
+    std::array<double, kNodes> offsets{};  ///< 1/metres
+    std::array<double, kNodes> sigmas{};   ///< their standard deviations where they are known, else 0
+
+    friend bool operator==(const DepthCorrection&, const DepthCorrection&) = default;
+};
+
 /// Adds each field that no sensor's depth has, named as in CameraInfo: a range that is not finite, negative
 /// or empty; noise that is not finite, negative, below CameraLimits::kLeastSigma_m everywhere in the range,
 /// or beyond it.
@@ -69,6 +86,7 @@ struct CameraInfo {
     double depth_units_per_metre = 1000;       ///< raw depth / this = metres
     double depth_min_m = 0.3, depth_max_m = 8.0;  ///< readings outside are not trusted
     DepthNoise noise;
+    std::optional<DepthCorrection> depth_correction;  ///< of its readings as they arrive; none: as they are
     /// How the camera is mounted on a robot whose body frame is x forward, y left, z up; none: it was not
     /// told.
     std::optional<Pose> body_from_camera;

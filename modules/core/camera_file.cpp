@@ -234,6 +234,21 @@ void read_noise(const Reader& reader, DepthNoise& noise) {
     noise.offset_m = reader.number("offset_m", {-10, 10, " m"}, false, noise.offset_m);
 }
 
+std::optional<DepthCorrection> read_correction(const Reader& reader) {
+    if (!reader.has("depth_correction")) return std::nullopt;
+    const Reader inner = reader.object("depth_correction", true);
+    inner.require_known({"offsets_per_m", "sigmas_per_m"});
+    constexpr double kMost = DepthCorrection::kMost_per_m;
+    DepthCorrection correction;
+    const auto take = [&](const char* key, double least, std::array<double, DepthCorrection::kNodes>& into) {
+        const auto numbers = inner.numbers(key, into.size(), {least, kMost, " per m"});
+        if (numbers) std::copy(numbers->begin(), numbers->end(), into.begin());
+    };
+    take("offsets_per_m", -kMost, correction.offsets);
+    if (inner.has("sigmas_per_m")) take("sigmas_per_m", 0, correction.sigmas);
+    return correction;
+}
+
 void read_units(const Reader& reader, CameraInfo& camera) {
     constexpr Bounds kUnits{CameraLimits::kLeastUnits, CameraLimits::kMostUnits, ", e.g. 1000 or 5000"};
     camera.depth_units_per_metre = reader.number("depth_units_per_metre", kUnits, true, 1000);
@@ -257,7 +272,7 @@ std::vector<std::string> unused_keys(const Reader& reader, const CameraInfo& cam
 CameraInfo read_camera(const Reader& reader) {
     reader.require_known({"sensor", "serial", "depth_camera", "color_camera", "registered",
                           "color_from_depth", "depth_units_per_metre", "depth_range_m", "noise", "poses_of",
-                          "note", "body_from_camera", kAccelerometer, kDistortion});
+                          "depth_correction", "note", "body_from_camera", kAccelerometer, kDistortion});
     CameraInfo camera;
     camera.serial = reader.text("serial", 64);
     camera.depth = read_pinhole(reader.object("depth_camera", true));
@@ -275,6 +290,7 @@ CameraInfo read_camera(const Reader& reader) {
     read_range(reader, camera);
     read_units(reader, camera);
     read_noise(reader.object("noise", false), camera.noise);
+    camera.depth_correction = read_correction(reader);
     if (reader.has(kAccelerometer)) read_rotation(reader.object(kAccelerometer, true));
     reader.text("note", 10000);
     const std::string poses_of = reader.text("poses_of", 64);
@@ -299,7 +315,17 @@ nlohmann::ordered_json transform_json(const Pose& transform) {
     return {{"rotation_vector_rad", {r.x(), r.y(), r.z()}}, {"translation_m", {t.x(), t.y(), t.z()}}};
 }
 
+nlohmann::ordered_json correction_json(const DepthCorrection& correction) {
+    return {{"offsets_per_m", correction.offsets}, {"sigmas_per_m", correction.sigmas}};
+}
+
 }  // namespace
+
+std::string with_depth_correction(const std::filesystem::path& file, const DepthCorrection& correction) {
+    json document = read_json_object(file);
+    document["depth_correction"] = correction_json(correction);
+    return document.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+}
 
 std::string camera_file_text(const CameraInfo& camera) {
     nlohmann::ordered_json file;
@@ -315,6 +341,7 @@ std::string camera_file_text(const CameraInfo& camera) {
     file["noise"] = {{"base_m", camera.noise.base_m},
                      {"quadratic_per_m", camera.noise.quadratic_per_m},
                      {"offset_m", camera.noise.offset_m}};
+    if (camera.depth_correction) file["depth_correction"] = correction_json(*camera.depth_correction);
     return file.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
 }
 

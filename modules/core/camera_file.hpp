@@ -21,6 +21,8 @@ namespace planemap {
 ///    "depth_range_m": [0.3, 8],            optional, instead of the preset's
 ///    "noise": {"base_m": 0.0012, "quadratic_per_m": 0.0019, "offset_m": 0.4},   optional, as each of its
 ///                                          keys, instead of the preset's
+///    "depth_correction": {"offsets_per_m": [20 numbers], "sigmas_per_m": [20 numbers]},   optional, see
+///                                          DepthCorrection; planemap-calibrate writes it
 ///    "camera_from_accelerometer": {"rotation_vector_rad": [...]},  optional, see camera_from_accelerometer()
 ///    "body_from_camera": {"rotation_vector_rad": [...], "translation_m": [...]},  optional: how the colour
 ///                                          camera is mounted on the robot (x forward, y left, z up)
@@ -34,6 +36,10 @@ CameraInfo read_camera_file(const std::filesystem::path& file, std::vector<std::
 /// The text of a camera.json that read_camera_file() reads as the same camera, but for roundings of the
 /// rotation's last digits.
 std::string camera_file_text(const CameraInfo& camera);
+
+/// The text of that camera.json with the correction in it, and all else as it stands there. Throws as
+/// read_json_object().
+std::string with_depth_correction(const std::filesystem::path& file, const DepthCorrection& correction);
 
 /// The published intrinsics of the TUM RGB-D benchmark's sensors (registered, 5000 units a metre) if the name
 /// of the folder holds "freiburg1", "freiburg2" or "freiburg3"; else nothing.

@@ -67,6 +67,8 @@ class FrameSource {
     virtual std::string end() { return {}; }
     /// How far it is read, 0 to 1, where size() is not known; nothing if that is not known either.
     virtual std::optional<double> progress() const { return std::nullopt; }
+    /// The source below all that was put around it.
+    virtual const FrameSource& origin() const { return *this; }
 };
 
 }  // namespace planemap

@@ -36,6 +36,7 @@ class PoseGraph::Impl {
 
     void extend(const Keyframe& keyframe);
     void optimise();
+    OptimisationTask task() const;
     std::unique_ptr<OptimisationTask> prepare();
     void apply(const OptimisationTask& task);
     bool adopt(const Surfaces& surfaces);
@@ -185,19 +186,25 @@ double PoseGraph::Impl::sight(const Keyframe& keyframe) {
     return landmarks_.add(newest, keyframe.regions, keyframes_.pose(newest), keyframe.noise);
 }
 
+/// With all that is known, from where the poses are.
+OptimisationTask PoseGraph::Impl::task() const {
+    OptimisationTask task;
+    task.edges = topology_.edges(false);
+    task.poses = keyframes_.poses();
+    task.landmarks = landmarks_.landmarks();
+    task.sightings = landmarks_.shared();
+    task.options = {options_.kernel_width, options_.max_iterations};
+    task.loops = topology_.loops().size();
+    return task;
+}
+
 std::unique_ptr<OptimisationTask> PoseGraph::Impl::prepare() {
-    auto task = std::make_unique<OptimisationTask>();
-    task->edges = topology_.edges(false);
+    auto task = std::make_unique<OptimisationTask>(this->task());
     if (schedule_.is_far(topology_.worst_new_loop(keyframes_.poses()))) {
         task->trusting_edges = topology_.edges(true);
         task->new_loops = topology_.new_loops();
     }
     topology_.mark_known();
-    task->poses = keyframes_.poses();
-    task->landmarks = landmarks_.landmarks();
-    task->sightings = landmarks_.shared();
-    task->options = {options_.kernel_width, options_.max_iterations};
-    task->loops = topology_.loops().size();
     task->started = schedule_.start();
     return task;
 }
@@ -318,6 +325,11 @@ const KeyframeTrajectory& PoseGraph::finish() {
         impl_->publish();
     }
     return impl_->trajectory();
+}
+
+BentDepth PoseGraph::bent_depth(const CameraInfo& camera, const DepthCorrection& so_far,
+                                const Flatness& flatness) const {
+    return graph::bent_depth(impl_->task(), camera, so_far, flatness);
 }
 
 const KeyframeTrajectory& PoseGraph::trajectory() const {

@@ -5,8 +5,10 @@
 #include <memory>
 #include <vector>
 
+#include "core/camera.hpp"
 #include "core/keyframe.hpp"
 #include "core/surfaces.hpp"
+#include "graph/bent_depth.hpp"
 #include "graph/loop_closure.hpp"
 #include "graph/options.hpp"
 
@@ -79,6 +81,11 @@ class PoseGraph {
 
     /// Optimises once more, with all that is known; for the end of a run.
     const KeyframeTrajectory& finish();
+
+    /// What all keyframes say of their sensor's depth; `so_far` corrected it before it came here. The graph
+    /// stays as it is.
+    BentDepth bent_depth(const CameraInfo& camera, const DepthCorrection& so_far,
+                         const Flatness& flatness = {}) const;
 
     /// True for the ids that may come next: greater than the last one's by at most 10,000. When the second
     /// keyframe's id is not, nobody knows which of both is a stray; add() then starts anew with it.

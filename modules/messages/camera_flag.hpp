@@ -17,6 +17,8 @@ class CameraFlag {
     /// The camera, if the flag was given; what its file says in vain is warned of. Throws as
     /// read_camera_file().
     std::optional<CameraInfo> read() const;
+    /// Empty if the flag was not given.
+    const std::filesystem::path& file() const { return file_; }
 
   private:
     std::filesystem::path file_;

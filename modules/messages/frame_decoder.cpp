@@ -8,6 +8,7 @@
 #include <cstring>
 #include <string>
 
+#include "core/depth_correction.hpp"
 #include "core/registration.hpp"
 #include "core/stamp.hpp"
 #include "messages/channels.hpp"
@@ -120,6 +121,7 @@ const DepthImage& Frame::depth() const {
     if (!depth_) {
         const Timer timer(spent_ms_);
         depth_ = depth_pixels(*raw_depth_, zipped_);
+        correct_depth(*depth_, *camera_);
     }
     return *depth_;
 }

@@ -10,6 +10,7 @@
 
 #include "camera/cameras.hpp"
 #include "core/validation.hpp"
+#include "sensor/corrected_source.hpp"
 #include "sensor/dataset.hpp"
 #include "sensor/log_source.hpp"
 #include "simulator/simulated_source.hpp"
@@ -30,9 +31,18 @@ bool is_file(const std::string& input) {
 }
 
 Source open_simulator(const std::string& input, const SourceOptions& options) {
-    if (options.camera)
-        throw std::invalid_argument(input + ": the simulator has a camera of its own; no --camera");
     auto source = std::make_unique<simulator::SimulatedSource>(simulator::parse_simulator_name(input));
+    if (options.camera) {
+        CameraInfo own = source->camera();
+        own.depth_correction = options.camera->depth_correction;
+        if (!own.depth_correction || !(own.depth == options.camera->depth))
+            throw std::invalid_argument(
+                input +
+                ": the simulator has a camera of its own; of --camera it takes only the depth_correction of "
+                "one with the same depth_camera");
+        source->select(options.frames);
+        return std::make_unique<CorrectedSource>(std::move(source), own);
+    }
     source->select(options.frames);
     return source;
 }
@@ -67,6 +77,7 @@ class SelectedFrames : public FrameSource {
     bool is_live() const override { return source_->is_live(); }
     std::vector<std::string> notes() const override { return source_->notes(); }
     std::string end() override { return source_->end(); }
+    const FrameSource& origin() const override { return source_->origin(); }
     ReadResult next(SensorFrame& frame) override {
         for (;;) {
             if (range_.to && next_ >= *range_.to) {
@@ -99,6 +110,7 @@ class TimedFrames : public FrameSource {
     bool is_live() const override { return true; }
     std::vector<std::string> notes() const override { return source_->notes(); }
     std::string end() override { return source_->end(); }
+    const FrameSource& origin() const override { return source_->origin(); }
     ReadResult next(SensorFrame& frame) override {
         if (Clock::now() < end_) return source_->next(frame);
         frame = {};
@@ -167,7 +179,10 @@ std::unique_ptr<FrameSource> open_source(const std::string& input, const SourceO
         if (options.device.repeat)
             throw std::invalid_argument("--repeat is for .oni files; INPUT is " + input);
     }
-    return opener.open(input, options);
+    Source source = opener.open(input, options);
+    const CameraInfo camera = source->camera();
+    if (!camera.depth_correction) return source;
+    return std::make_unique<CorrectedSource>(std::move(source), camera);
 }
 
 }  // namespace planemap::sensor

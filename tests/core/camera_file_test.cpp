@@ -293,5 +293,35 @@ TEST(CameraFile, TheExampleOfTheErrorIsComplete) {
     EXPECT_EQ(test::error_of([&] { read(error.substr(start)); }), "");
 }
 
+TEST(CameraFile, ACorrectionIsReadWrittenAndChecked) {
+    const auto with = [](const std::string& correction) {
+        return std::string(kDepth) + R"(, "depth_units_per_metre": 1000, "depth_correction": )" + correction +
+               "}";
+    };
+    std::string numbers = "0.011";
+    for (int i = 1; i < 20; ++i) numbers += ", " + std::to_string(0.0001 * i);
+    const CameraInfo camera = read(with(R"({"offsets_per_m": [)" + numbers + "]}"));
+    ASSERT_TRUE(camera.depth_correction);
+    EXPECT_EQ(camera.depth_correction->offsets[0], 0.011);
+    EXPECT_EQ(camera.depth_correction->offsets[19], 0.0019);
+    EXPECT_EQ(read(camera_file_text(camera)), camera);
+    for (const char* bad : {"3", "{}", R"({"offsets_per_m": [1, 2]})", R"({"offsets": [0]})"})
+        EXPECT_THAT(test::error_of([&] { read(with(bad)); }), HasSubstr("depth_correction")) << bad;
+    EXPECT_THAT(test::error_of([&] { read(with(R"({"offsets_per_m": [9, )" + numbers.substr(7) + "]}")); }),
+                HasSubstr("offsets_per_m"));
+}
+
+TEST(CameraFile, ACorrectionComesIntoAFileAsItIs) {
+    const test::TemporaryFolder folder;
+    const auto file = folder.write("camera.json", std::string(kDepth) + R"(, "depth_units_per_metre": 1000,
+        "note": "of the lab", "sensor": "kinect1"})");
+    DepthCorrection correction;
+    correction.offsets[3] = 0.002;
+    const CameraInfo camera = read(with_depth_correction(file, correction));
+    EXPECT_EQ(camera.depth_correction, correction);
+    EXPECT_EQ(camera.noise, read_camera_file(file).noise);
+    EXPECT_THAT(with_depth_correction(file, correction), HasSubstr("of the lab"));
+}
+
 }  // namespace
 }  // namespace planemap

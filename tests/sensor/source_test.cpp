@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/depth_correction.hpp"
 #include "simulator/simulated_source.hpp"
 #include "temporary_folder.hpp"
 
@@ -50,6 +51,36 @@ TEST(OpenSource, SomeFramesOfTheSimulator) {
     EXPECT_EQ(some->next(frame).status, ReadResult::Status::kEnd);
     EXPECT_EQ(dynamic_cast<const simulator::SimulatedSource&>(*some).ground_truth().size(), 3u);
     EXPECT_THROW(open_source(name, {.frames = {8, {}}}), std::invalid_argument);
+}
+
+TEST(OpenSource, ACorrectionIsDoneBeforeAnybodySeesTheReadings) {
+    const std::string name = "sim:office?frames=2&width=80&height=60";
+    const auto sensed = open_source(name);
+    SourceOptions options;
+    options.camera = sensed->camera();
+    options.camera->depth_correction.emplace();
+    options.camera->depth_correction->offsets.fill(0.01);
+    const auto source = open_source(name, options);
+    EXPECT_FALSE(source->camera().depth_correction);
+    EXPECT_EQ(source->size(), 2u);
+    EXPECT_NE(dynamic_cast<const simulator::SimulatedSource*>(&source->origin()), nullptr);
+    SensorFrame expected, frame;
+    sensed->next(expected);
+    ASSERT_EQ(source->next(frame).status, ReadResult::Status::kFrame);
+    DepthImage corrected = expected.depth;
+    correct_depth(corrected, *options.camera);
+    EXPECT_NE(corrected.pixels, expected.depth.pixels);
+    EXPECT_EQ(frame.depth.pixels, corrected.pixels);
+    EXPECT_TRUE(frame.depth_zipped.empty());
+}
+
+TEST(OpenSource, TheSimulatorTakesACorrectionAlone) {
+    SourceOptions options;
+    options.camera = open_source("sim:office?width=80&height=60")->camera();
+    EXPECT_THROW(open_source("sim:office?width=80&height=60", options), std::invalid_argument);
+    options.camera->depth_correction.emplace();
+    EXPECT_NO_THROW(open_source("sim:office?width=80&height=60", options));
+    EXPECT_THROW(open_source("sim:office?width=160&height=120", options), std::invalid_argument);
 }
 
 }  // namespace

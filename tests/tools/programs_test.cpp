@@ -22,7 +22,7 @@ constexpr const char* kPrograms[] = {
     "planemap-simulate",     "planemap-segment",  "planemap-sensor", "planemap-log",
     "planemap-segmentation", "planemap-odometry", "planemap-graph",  "planemap-map",
     "planemap-octomap",      "planemap-convert",  "planemap-viewer", "planemap-virtual-camera",
-    "planemap-launch"};
+    "planemap-launch",       "planemap-calibrate"};
 
 struct ProgramsTest : test::Programs {
     Json evaluate(const std::string& truth, const std::string& estimate) {

@@ -212,7 +212,7 @@ std::unique_ptr<FrameSource> open_input(const std::string& input, const ConvertO
 }
 
 Trajectory truth_of(const std::string& input, const FrameSource& source) {
-    if (const auto* simulated = dynamic_cast<const simulator::SimulatedSource*>(&source))
+    if (const auto* simulated = dynamic_cast<const simulator::SimulatedSource*>(&source.origin()))
         return simulated->ground_truth();
     std::error_code ignored;
     fs::path folder = input;

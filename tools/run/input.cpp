@@ -46,12 +46,12 @@ class SensorInput : public Input {
     }
 
     std::optional<Trajectory> truth() const override {
-        if (const auto* simulated = dynamic_cast<const simulator::SimulatedSource*>(&shell_.source()))
+        if (const auto* simulated = dynamic_cast<const simulator::SimulatedSource*>(&shell_.source().origin()))
             return simulated->ground_truth();
         return truth_;
     }
     std::vector<Result> truth_results() const override {
-        const auto* simulated = dynamic_cast<const simulator::SimulatedSource*>(&shell_.source());
+        const auto* simulated = dynamic_cast<const simulator::SimulatedSource*>(&shell_.source().origin());
         if (simulated == nullptr) return {};
         return {
             {"groundtruth.txt", [=](const auto& file) { write_trajectory(file, simulated->ground_truth()); }},

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/depth_correction.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+namespace planemap {
+
+namespace {
+
+/// A place between two neighbouring nodes of `count`, of a pixel of `size`.
+struct Between {
+    std::size_t first;
+    double share;  ///< of the second
+
+    Between(double pixel, int size, std::size_t count) {
+        const double place = std::clamp((pixel + 0.5) / size, 0.0, 1.0) * static_cast<double>(count - 1);
+        first = std::min(static_cast<std::size_t>(place), count - 2);
+        share = place - static_cast<double>(first);
+    }
+};
+
+/// Offsets in 1 / raw units, a row of the image.
+void fill_row(const DepthCorrection& correction, const PinholeCamera& depth, double units, int v,
+              std::vector<float>& row) {
+    for (int u = 0; u < depth.width; ++u)
+        row[static_cast<std::size_t>(u)] = static_cast<float>(offset_at(correction, depth, u, v) / units);
+}
+
+std::uint16_t corrected(std::uint16_t raw, float offset) {
+    if (!is_valid_depth(raw)) return raw;
+    const float z = static_cast<float>(raw) / (1 + static_cast<float>(raw) * offset);
+    if (!(z >= 0.5f && z < 65534.5f)) return 0;
+    return static_cast<std::uint16_t>(z + 0.5f);
+}
+
+}  // namespace
+
+FieldWeights field_weights(const PinholeCamera& depth, double u, double v) {
+    constexpr std::size_t kColumns = DepthCorrection::kColumns, kRows = DepthCorrection::kRows;
+    const Between x(u, depth.width, kColumns), y(v, depth.height, kRows);
+    const std::size_t node = y.first * kColumns + x.first;
+    return {
+        {node, node + 1, node + kColumns, node + kColumns + 1},
+        {(1 - x.share) * (1 - y.share), x.share * (1 - y.share), (1 - x.share) * y.share, x.share * y.share}};
+}
+
+double offset_at(const DepthCorrection& correction, const PinholeCamera& depth, double u, double v) {
+    const FieldWeights field = field_weights(depth, u, v);
+    double offset = 0;
+    for (std::size_t i = 0; i < 4; ++i) offset += field.weights[i] * correction.offsets[field.nodes[i]];
+    return offset;
+}
+
+DepthCorrection composed(const DepthCorrection& first, const DepthCorrection& second) {
+    DepthCorrection both = second;
+    for (std::size_t i = 0; i < both.offsets.size(); ++i) both.offsets[i] += first.offsets[i];
+    return both;
+}
+
+void correct_depth(DepthImage& depth, const CameraInfo& camera) {
+    if (!camera.depth_correction) return;
+    std::vector<float> offsets(static_cast<std::size_t>(depth.width));
+    for (int v = 0; v < depth.height; ++v) {
+        fill_row(*camera.depth_correction, camera.depth, camera.depth_units_per_metre, v, offsets);
+        for (int u = 0; u < depth.width; ++u)
+            depth(u, v) = corrected(depth(u, v), offsets[static_cast<std::size_t>(u)]);
+    }
+}
+
+}  // namespace planemap
