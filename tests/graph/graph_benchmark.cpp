@@ -233,6 +233,11 @@ void time_index(int count) {
 int main(int argc, char** argv) {
     const int keyframes = argc > 1 ? std::atoi(argv[1]) : 2000;
     const int places = argc > 2 ? std::atoi(argv[2]) : 10000;
+    if (keyframes < 2 || places < 0 || argc > 3) {
+        std::fprintf(stderr,
+                     "Usage: graph_benchmark [KEYFRAMES, 2 or more [PLACES, 0: optimisation alone]]\n");
+        return 2;
+    }
     planemap::graph::time_optimisation(keyframes);
     if (places == 0) return 0;
     planemap::graph::time_graph(keyframes);

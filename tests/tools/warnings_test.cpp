@@ -46,6 +46,18 @@ TEST(Warnings, MostFramesLost) {
         ElementsAre(HasSubstr("why not the others: 59 frames are late")));
 }
 
+TEST(Warnings, DepthThatIsBentByMoreThanItScatters) {
+    const auto with = [](double off_m) {
+        return warnings_of(
+            estimates_at(0.033), false, {},
+            {{"depth_off", {{"range_m", 3}, {"off_m", off_m}, {"sigma_m", 0.01}, {"noise_m", 0.014}}}});
+    };
+    EXPECT_THAT(with(0.043), ElementsAre(testing::AllOf(HasSubstr("readings of 3 m are off by 4.3 cm"),
+                                                        HasSubstr("planemap-calibrate"))));
+    EXPECT_THAT(with(0.013), IsEmpty());
+    EXPECT_THAT(warnings_of(estimates_at(0.033), false, {}, {{"depth_off", nullptr}}), IsEmpty());
+}
+
 TEST(Warnings, ScaleOffTheTruth) {
     const auto with = [](Json scale, double extent_m) {
         return warnings_of(estimates_at(0.033), false, {},

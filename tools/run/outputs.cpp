@@ -98,6 +98,25 @@ Json up_of(const PlaneMap& map) {
     return direction;
 }
 
+/// What the graph says of the sensor's depth, at a range where a room's walls are: how far readings are off,
+/// RMS over the image's nodes, how certain that is, and what readings scatter by. Null without a graph.
+Json depth_off(pipeline::Pipeline& pipeline) {
+    constexpr double kRange_m = 3;
+    const CameraInfo* camera = pipeline.decoder().camera();
+    if (pipeline.graph() == nullptr || camera == nullptr) return nullptr;
+    const graph::BentDepth bent = pipeline.graph()->graph().bent_depth(*camera, {});
+    if (!bent.is_known) return nullptr;
+    const auto rms_m = [](const auto& per_metre) {
+        double squares = 0;
+        for (const double value : per_metre) squares += value * value;
+        return kRange_m * kRange_m * std::sqrt(squares / static_cast<double>(per_metre.size()));
+    };
+    return {{"range_m", kRange_m},
+            {"off_m", rms_m(bent.correction.offsets)},
+            {"sigma_m", rms_m(bent.correction.sigmas)},
+            {"noise_m", camera->noise.sigma(kRange_m)}};
+}
+
 Json report_of(const std::string& input_name, const Input& input, pipeline::Pipeline& pipeline,
                const DepthWatch& depth, const RunClock& clock, const Json& about) {
     const PlaneMap& map = pipeline.map().mapper().map();
@@ -115,6 +134,7 @@ Json report_of(const std::string& input_name, const Input& input, pipeline::Pipe
     report["loop_closures"] = keyframes.loop_closures;
     report["planes"] = map.planes.size();
     report["up"] = {{"direction", up_of(map)}, {"why", pipeline.map().mapper().why_up()}};
+    report["depth_off"] = depth_off(pipeline);
     report["losses"] = losses_of(pipeline);
     report["wall_s"] = clock.wall_s();
     report["cpu_s"] = clock.cpu_s();

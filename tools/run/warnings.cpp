@@ -31,6 +31,17 @@ double median_step_s(const std::vector<OdometryEstimate>& estimates) {
     return 1e-6 * static_cast<double>(*middle);
 }
 
+/// Where depth is off by more than it scatters, the map is as bent; empty if it is not.
+std::string bent_depth(const Json& report) {
+    const Json depth = report.value("depth_off", Json());
+    if (!depth.is_object() || !(depth.at("off_m").get<double>() > depth.at("noise_m").get<double>()))
+        return "";
+    return format("surfaces fit together best if depth readings of %g m", depth.at("range_m").get<double>()) +
+           format(" are off by %.1f cm", 100 * depth.at("off_m").get<double>()) +
+           format(" (over the image; certain to %.1f cm)", 100 * depth.at("sigma_m").get<double>()) +
+           ": planemap-calibrate learns how, and --camera with its file corrects it";
+}
+
 }  // namespace
 
 std::vector<std::string> warnings_of(const std::vector<OdometryEstimate>& estimates, bool poses_given,
@@ -50,6 +61,8 @@ std::vector<std::string> warnings_of(const std::vector<OdometryEstimate>& estima
                    "camera moved far between two",
                    kSlowStep_s));
     }
+    const std::string bent = bent_depth(report);
+    if (!bent.empty()) warnings.push_back(bent);
     if (!report.contains("accuracy")) return warnings;
     const Json& accuracy = report.at("accuracy");
     const Json scale = accuracy.value("scale", Json());
