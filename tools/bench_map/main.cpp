@@ -110,6 +110,12 @@ void add_flags(messages::Flags& flags, Arguments& arguments) {
     flags.add(options_of(arguments.pipeline.map.map), "map-");
 }
 
+/// Holds the row's map against the truth.
+void judge(const std::vector<evaluation::TruePlane>& truth, const Pose& truth_from_map, Row& row) {
+    row.judgement = evaluation::judge(truth, row.run.map, truth_from_map);
+    row.edges = evaluation::judge_edges(truth, row.run.map, truth_from_map);
+}
+
 /// The rows of one sequence, for the kinds of poses that were asked for.
 std::vector<Row> rows_of(const Arguments& arguments, const std::vector<PosesInfo>& poses,
                          const std::string& sequence, const std::string& input) {
@@ -135,13 +141,13 @@ std::vector<Row> rows_of(const Arguments& arguments, const std::vector<PosesInfo
         Row& row = rows.emplace_back(Row{sequence, "estimated", run.estimated, std::nullopt, {}});
         if (truth && run.truth) {
             const auto truth_from_map = alignment(at_poses(run.keyframes, *run.truth), row.run.poses);
-            if (truth_from_map) row.judgement = evaluation::judge(*truth, row.run.map, *truth_from_map);
+            if (truth_from_map) judge(*truth, *truth_from_map, row);
         }
     }
     if (run.true_poses) {
         Row& row = rows.emplace_back(Row{sequence, "true", std::move(*run.true_poses), std::nullopt, {}});
         if (truth) {
-            row.judgement = evaluation::judge(*truth, row.run.map, Pose::Identity());
+            judge(*truth, Pose::Identity(), row);
         } else {
             row.surfaces =
                 check_surfaces(input, arguments.frames, options.pipeline.camera, row.run.map, *run.truth);
@@ -150,7 +156,7 @@ std::vector<Row> rows_of(const Arguments& arguments, const std::vector<PosesInfo
     for (std::size_t i = 0; i < run.noisy.size(); ++i) {
         Row& row =
             rows.emplace_back(Row{sequence, noise_names[i], std::move(run.noisy[i]), std::nullopt, {}});
-        if (truth) row.judgement = evaluation::judge(*truth, row.run.map, Pose::Identity());
+        if (truth) judge(*truth, Pose::Identity(), row);
     }
     return rows;
 }

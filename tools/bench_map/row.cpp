@@ -69,6 +69,11 @@ constexpr Goal kGoals[] = {
     {"outline IoU", true, 0.9, 3, "outline_iou"},
     {"doubled area, share", false, 0.01, 3, "doubled_area"},
     {"floating area, share", false, 0.01, 3, "floating_area"},
+    {"edges found, share", true, 0.9, 3, "edges_found"},
+    {"lines on an edge, share", true, 0.95, 3, "lines_right"},
+    {"corners found, share", true, 0.9, 3, "corners_found"},
+    {"points on a corner, share", true, 0.95, 3, "points_right"},
+    {"outline to its line, p90, m", false, 0.02, 4, "outline_to_line_p90_m"},
     {"leaves explained, share", true, 0.75, 3, "leaves_explained"},
     {"area supported, share", true, 0.9, 3, "area_supported"},
     {"message, kB", false, 8, 1, "message_bytes", kilobytes},
@@ -87,6 +92,7 @@ Json to_json(const Row& row) {
     json["keyframes"] = row.run.poses.keyframes.size();
     json["planes"] = row.run.map.planes.size();
     json.update(figures_of(row.judgement));
+    json.update(edge_figures(row.edges));
     json["leaves_explained"] =
         known(row.run.coverage, [](const Coverage& coverage) { return coverage.leaves_explained; });
     json["area_supported"] =
@@ -126,6 +132,12 @@ const benchmark::Table& table() {
                                          kBar,
                                          {"IoU", "outline_iou", 5, 3},
                                          {"worst", "outline_iou_worst", 5, 3},
+                                         kBar,
+                                         {"edge %", "edges_found", 6, 1, percent},
+                                         {"right", "lines_right", 5, 1, percent},
+                                         {"corn %", "corners_found", 6, 1, percent},
+                                         {"right", "points_right", 5, 1, percent},
+                                         {"gap mm", "outline_to_line_p90_m", 6, 1, milli},
                                          kBar,
                                          {"dbl %", "doubled_area", 5, 1, percent},
                                          {"flt %", "floating_area", 5, 1, percent},

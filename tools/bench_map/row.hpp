@@ -19,8 +19,9 @@ struct Row {
     std::string sequence;
     std::string poses;  ///< "estimated", "true", or "noise1" and so on
     MapRun run;
-    std::optional<evaluation::Judgement> judgement;  ///< nothing without the true planes
-    std::vector<SurfaceCheck> surfaces;              ///< empty where it was not done
+    std::optional<evaluation::Judgement> judgement;                 ///< nothing without the true planes
+    std::vector<SurfaceCheck> surfaces;                             ///< empty where it was not done
+    std::optional<evaluation::EdgeJudgement> edges = std::nullopt;  ///< nothing without the true planes
 };
 
 /// A row as --json writes it; null for what is not known.

@@ -111,6 +111,20 @@ Json figures_of(const std::optional<Judgement>& judged) {
     return json;
 }
 
+Json edge_figures(const std::optional<EdgeJudgement>& edges) {
+    const auto share = [&](std::optional<double> (EdgeJudgement::*of)() const) {
+        return benchmark::number(edges ? (*edges.*of)().value_or(NAN) : NAN);
+    };
+    Json json;
+    json["edges_true_m"] = known(edges, [](const EdgeJudgement& e) { return e.true_m; });
+    json["edges_found"] = share(&EdgeJudgement::edges_found);
+    json["lines_right"] = share(&EdgeJudgement::lines_right);
+    json["corners_true"] = known(edges, [](const EdgeJudgement& e) { return e.corners; });
+    json["corners_found"] = share(&EdgeJudgement::corners_found);
+    json["points_right"] = share(&EdgeJudgement::points_right);
+    return json;
+}
+
 std::string judgement_details(const Judgement& judgement, bool all) {
     std::string lines =
         plane_lines(judgement, "not found", [](const auto& plane) { return !plane.found; }) +

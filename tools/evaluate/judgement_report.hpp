@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "benchmark/table.hpp"
+#include "evaluate/edge_judge.hpp"
 #include "evaluate/plane_judge.hpp"
 #include "evaluate/statistics.hpp"
 
@@ -24,6 +25,7 @@ Json figure_of(const Statistics& errors, double Statistics::*figure);
 /// The figures of a judgement, metres, degrees, percent and shares as their keys say; null for what is not
 /// known, without a judgement for everything.
 Json figures_of(const std::optional<Judgement>& judgement);
+Json edge_figures(const std::optional<EdgeJudgement>& edges);
 
 /// What to look at: true planes not found or split, spurious map planes, the worst outline, the pairs with
 /// the largest errors, map planes on several true ones, true planes that look alike. With `all`, every true

@@ -10,6 +10,7 @@
 #include "core/files.hpp"
 #include "core/standard_output.hpp"
 #include "core/trajectory_file.hpp"
+#include "evaluate/edge_judge.hpp"
 #include "evaluate/evaluation.hpp"
 #include "evaluate/judgement_report.hpp"
 #include "evaluate/true_planes.hpp"
@@ -137,6 +138,14 @@ void print_judgement(const evaluation::Judgement& judgement) {
     print(evaluation::judgement_details(judgement, false));
 }
 
+void print_edges(const evaluation::EdgeJudgement& edges) {
+    const auto percent = [](const std::optional<double>& share) { return 100 * share.value_or(0); };
+    std::printf("edges: %.1f %% of %.1f m found, %.1f %% of the map's %.1f m right\n",
+                percent(edges.edges_found()), edges.true_m, percent(edges.lines_right()), edges.lines_m);
+    std::printf("corners: %zu of %zu found, %zu of the map's %zu right\n", edges.met, edges.corners,
+                edges.right_points, edges.points);
+}
+
 /// The two trajectories, and how their poses are matched: by time, or without timestamps by their number.
 struct Pair {
     TrajectoryFile truth, estimate;
@@ -222,12 +231,20 @@ void add_delta(const Arguments& arguments, const Pair& pair, bool as_text, nlohm
     json["delta_unit"] = arguments.delta_unit;
 }
 
-/// The map in `folder` beside the planes of a simulated truth; nothing for another truth.
-std::optional<evaluation::Judgement> judged_map(const std::string& truth, const std::filesystem::path& folder,
-                                                const Pose& truth_from_map) {
+/// A map beside the planes of a simulated truth, and beside where these meet.
+struct JudgedMap {
+    evaluation::Judgement planes;
+    evaluation::EdgeJudgement edges;
+};
+
+/// The map in `folder`; nothing for another truth than a simulated one.
+std::optional<JudgedMap> judged_map(const std::string& truth, const std::filesystem::path& folder,
+                                    const Pose& truth_from_map) {
     const auto planes = evaluation::true_planes(truth, 0);
     if (!planes) return std::nullopt;
-    return evaluation::judge(*planes, map::read_plane_map(folder / "plane_map.lcmlog"), truth_from_map);
+    const PlaneMap map = map::read_plane_map(folder / "plane_map.lcmlog");
+    return JudgedMap{evaluation::judge(*planes, map, truth_from_map),
+                     evaluation::judge_edges(*planes, map, truth_from_map)};
 }
 
 void run(Arguments arguments) {
@@ -243,13 +260,19 @@ void run(Arguments arguments) {
     json["truth_format"] = format_name(pair.truth.format);
     json["estimate_format"] = format_name(pair.estimate.format);
     json["matched_by"] = pair.by_index ? "index" : "time";
-    if (judgement) json["map"] = evaluation::figures_of(judgement);
+    if (judgement) {
+        json["map"] = evaluation::figures_of(std::optional(judgement->planes));
+        json["map"].update(evaluation::edge_figures(std::optional(judgement->edges)));
+    }
     const bool as_text = arguments.json_file != "-";
     if (as_text && pair.by_index)
         std::printf("KITTI's form has no timestamps: pose i is compared with pose i\n");
     if (as_text) print_table(evaluation);
     if (arguments.delta) add_delta(arguments, pair, as_text, json);
-    if (as_text && judgement) print_judgement(*judgement);
+    if (as_text && judgement) {
+        print_judgement(judgement->planes);
+        print_edges(judgement->edges);
+    }
     if (arguments.json_file == "-") {
         print(json.dump(2) + "\n");
     } else if (!arguments.json_file.empty()) {

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "core/angle.hpp"
+#include "evaluate/edge_judge.hpp"
 #include "evaluate/plane_raster.hpp"
 
 namespace planemap::evaluation {
@@ -293,6 +294,7 @@ Soundness soundness(const PlaneMap& map, const std::vector<PosedView>& views, co
     }
     std::stable_sort(result.doubled.begin(), result.doubled.end(),
                      [](const auto& a, const auto& b) { return a.area_m2 > b.area_m2; });
+    result.outline_gaps = outline_gaps(map);
     return result;
 }
 

@@ -65,6 +65,7 @@ struct Soundness {
     std::vector<PlaneSoundness> planes;    ///< in the map's order
     std::vector<DoubledPair> doubled;      ///< from the largest
     std::vector<RangeResiduals> by_range;  ///< steps of 1 m, those with readings
+    std::vector<double> outline_gaps;      ///< from lines where planes meet to outlines, see outline_gaps()
 
     /// Shares; nothing where there is nothing to have a share of.
     std::optional<double> doubled_share() const;

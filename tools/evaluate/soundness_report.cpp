@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "benchmark/table.hpp"
+#include "evaluate/statistics.hpp"
 
 namespace planemap::evaluation {
 
@@ -54,6 +55,8 @@ Json soundness_figures(const Soundness& soundness) {
             {"explained_points_5cm", figure(soundness.near_share())},
             {"point_to_plane_rms_m", measured ? Json(soundness.residuals.rms_m) : Json(nullptr)},
             {"point_to_plane_bias_m", measured ? Json(soundness.residuals.mean_m) : Json(nullptr)},
+            {"outline_to_line_median_m", benchmark::number(nearest_rank(soundness.outline_gaps, 0.5))},
+            {"outline_to_line_p90_m", benchmark::number(nearest_rank(soundness.outline_gaps, 0.9))},
             {"soundness",
              {{"views", soundness.views},
               {"readings", soundness.readings},
@@ -79,6 +82,11 @@ std::string soundness_markdown(const Json& report) {
     row("readings within 5 cm of one", "explained_points_5cm");
     row("outlines' area that another plane says again (15 cm, 12 deg)", "doubled_area");
     row("outlines' seen area that most views looked through", "floating_area");
+    if (report.at("outline_to_line_p90_m").is_number()) {
+        out += text("\nOutlines end %.1f mm (median; p90 %.1f mm) from the lines where planes meet.\n",
+                    1e3 * report.at("outline_to_line_median_m").get<double>(),
+                    1e3 * report.at("outline_to_line_p90_m").get<double>());
+    }
     if (report.at("point_to_plane_rms_m").is_number()) {
         out += text(
             "\nExplained readings lie %.1f mm from their plane (RMS), %+.1f mm in the mean (+: before it).\n",
