@@ -28,6 +28,15 @@ std::vector<Pose> some_of(const std::map<int, Pose>& poses) {
     return cameras;
 }
 
+/// True for lines of which no end moved to note.
+bool are_alike(const std::vector<Meeting>& a, const std::vector<Meeting>& b) {
+    constexpr float kMoved_m = 0.005F;
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Meeting& x, const Meeting& y) {
+        return x.line.plane_a == y.line.plane_a && x.line.plane_b == y.line.plane_b &&
+               (x.line.from - y.line.from).norm() <= kMoved_m && (x.line.to - y.line.to).norm() <= kMoved_m;
+    });
+}
+
 }  // namespace
 
 void DerivedMap::start_from(const PlaneMap& map) {
@@ -47,7 +56,8 @@ void DerivedMap::seen_at(std::int64_t utime) {
     map_.utime = std::max(map_.utime, utime);
 }
 
-/// Returns whether the plane changed to note.
+/// Returns whether the plane changed to note; it has then its outline as exact as its cells, for others to be
+/// compared with.
 bool DerivedMap::derive(PlaneEstimate& estimate, std::optional<MapPlane>& plane) const {
     if (plane) {
         const Plane* as_drawn = intersections_.plane(estimate.id);
@@ -57,7 +67,10 @@ bool DerivedMap::derive(PlaneEstimate& estimate, std::optional<MapPlane>& plane)
         }
     }
     estimate.changed_cells = 0;
-    plane = derived_plane(estimate, derivation_);
+    DerivationRules exact = derivation_;
+    exact.outline.tolerance_m = std::min(exact.outline.tolerance_m, estimate.grid.cell_m());
+    exact.outline.least_m2 = 0;
+    plane = derived_plane(estimate, exact);
     return true;
 }
 
@@ -80,6 +93,40 @@ void DerivedMap::label(const std::map<int, Pose>& poses, const ToldUp& told) {
     why_up_ = up.why;
     told_revision_ = told.revision();
     told_poses_ = poses.size();
+}
+
+/// Where each plane meets others, by its id.
+std::map<int, std::vector<Meeting>> DerivedMap::meetings() const {
+    std::map<int, std::vector<Meeting>> meetings;
+    for (const IntersectionLine& line : map_.lines) {
+        const MapPlane *a = map_.find(line.plane_a), *b = map_.find(line.plane_b);
+        const auto sine = static_cast<double>(a->normal.cross(b->normal).norm());
+        const Meeting meeting{
+            line, meeting_reach(static_cast<double>(a->rms), static_cast<double>(b->rms), sine, adjacency_)};
+        meetings[line.plane_a].push_back(meeting);
+        meetings[line.plane_b].push_back(meeting);
+    }
+    return meetings;
+}
+
+/// Lays the outlines of planes that changed, or whose lines did, on these.
+void DerivedMap::end_at_lines(const std::vector<PlaneEstimate>& estimates, const std::vector<int>& changed) {
+    std::map<int, std::vector<Meeting>> meetings = this->meetings();
+    for (const PlaneEstimate& estimate : estimates) {
+        const auto plane = std::lower_bound(map_.planes.begin(), map_.planes.end(), estimate.id,
+                                            [](const MapPlane& p, int id) { return p.id < id; });
+        if (plane == map_.planes.end() || plane->id != estimate.id) continue;
+        const std::vector<Meeting>& now = meetings[estimate.id];
+        if (!std::binary_search(changed.begin(), changed.end(), estimate.id) &&
+            are_alike(now, met_[estimate.id]))
+            continue;
+        if (auto ended = derived_plane(estimate, derivation_, now)) {
+            ended->label = plane->label;
+            *plane = std::move(*ended);
+        }
+        met_[estimate.id] = now;
+    }
+    std::erase_if(met_, [&](const auto& of) { return map_.find(of.first) == nullptr; });
 }
 
 void DerivedMap::refresh(std::vector<PlaneEstimate>& estimates, const std::map<int, Pose>& poses,
@@ -106,6 +153,7 @@ void DerivedMap::refresh(std::vector<PlaneEstimate>& estimates, const std::map<i
     map_.planes = std::move(planes);
     std::sort(changed.begin(), changed.end());
     intersections_.update(map_, changed);
+    end_at_lines(estimates, changed);
     const bool more_is_told =
         told.revision() != told_revision_ || (told.revision() > 0 && poses.size() != told_poses_);
     if (!changed.empty() || more_is_told) label(poses, told);

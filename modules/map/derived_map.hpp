@@ -19,7 +19,7 @@ namespace planemap::map {
 class DerivedMap {
   public:
     DerivedMap(const DerivationRules& derivation, const AdjacencyRules& adjacency)
-        : derivation_(derivation), intersections_(adjacency) {}
+        : derivation_(derivation), adjacency_(adjacency), intersections_(adjacency) {}
 
     const PlaneMap& map() const { return map_; }
     bool left_out_points() const { return intersections_.left_out_points(); }
@@ -45,10 +45,14 @@ class DerivedMap {
   private:
     void label(const std::map<int, Pose>& poses, const ToldUp& told);
     bool derive(PlaneEstimate& estimate, std::optional<MapPlane>& plane) const;
+    std::map<int, std::vector<Meeting>> meetings() const;
+    void end_at_lines(const std::vector<PlaneEstimate>& estimates, const std::vector<int>& changed);
 
     DerivationRules derivation_;
+    AdjacencyRules adjacency_;
     MapIntersections intersections_;
     PlaneMap map_;
+    std::map<int, std::vector<Meeting>> met_;  ///< where each plane's outline ends at others, as it was laid
     Eigen::Vector3f earlier_up_ = Eigen::Vector3f::Zero();  ///< of the map to start from; zero: not known
     std::string why_up_ = "there are no planes";
     // When the planes were labelled last:

@@ -4,21 +4,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 namespace planemap::map {
-
-namespace {
-
-/// Simplified as far as the tolerance allows without rings that cross.
-Outline simplified_without_crossings(const Outline& outline, double tolerance) {
-    for (int attempt = 0; attempt < 4; ++attempt, tolerance /= 2) {
-        Outline simple = simplified(outline, tolerance);
-        if (!rings_cross(simple)) return simple;
-    }
-    return outline;
-}
-
-}  // namespace
 
 /// Room for the words [word_from, word_to) of the rows [y_from, y_to).
 void EvidenceGrid::grow(int word_from, int y_from, int word_to, int y_to) {
@@ -154,16 +142,17 @@ EvidenceGrid::Counts EvidenceGrid::counts(const Eigen::Vector2d& p_grid) const {
     return {cells.hits(cx & 63), cells.misses(cx & 63)};
 }
 
-Outline EvidenceGrid::outline(const OutlineOptions& options) const {
-    if (cells_.empty()) return {};
-    constexpr int kSpare = 2, kWellSupported = 8;
+/// The cells of the shape, with room around them for what end_at() adds.
+EvidenceGrid::Shape EvidenceGrid::shape(int min_hits) const {
+    constexpr int kSpare = 8;
+    constexpr int kWellSupported = 8;
     Bitmap shape(word0_ - 1, y0_ - kSpare, words_ + 2, rows_ + 2 * kSpare);
     Bitmap sure = shape, refuted = shape;
     for (int y = y0_; y < y0_ + rows_; ++y) {
         const EvidenceCells* cells = row(y);
         for (int w = 0; w < words_; ++w) {
             const std::uint64_t against = cells[w].refuted();
-            shape.row(y)[w + 1] = cells[w].at_least(options.min_hits) & ~against;
+            shape.row(y)[w + 1] = cells[w].at_least(min_hits) & ~against;
             sure.row(y)[w + 1] = cells[w].at_least(kWellSupported) & ~against;
             refuted.row(y)[w + 1] = ~against;
         }
@@ -175,14 +164,24 @@ Outline EvidenceGrid::outline(const OutlineOptions& options) const {
     Bitmap kept = solid.opened(1);
     sure &= shape;
     kept |= sure;
-    Outline outline = kept.trace();
+    for (int y = y0_; y < y0_ + rows_; ++y)
+        for (int w = 0; w < words_; ++w) sure.row(y)[w + 1] = row(y)[w].at_least(EvidenceCells::kCertain);
+    sure &= kept;
+    return {std::move(kept), std::move(sure)};
+}
+
+Outline EvidenceGrid::outline(const OutlineOptions& options, const std::vector<MeetingLine>& lines) const {
+    if (cells_.empty()) return {};
+    auto [cells, sure] = shape(options.min_hits);
+    for (const MeetingLine& line : lines) end_at(line, cell_m_, sure, cells);
+    Outline outline = cells.trace();
     std::erase_if(outline.rings, [&](const Ring& ring) {
         return std::abs(signed_area(ring)) * cell_m_ * cell_m_ < options.min_ring_m2;
     });
     for (Ring& ring : outline.rings) {
         for (Eigen::Vector2d& vertex : ring) vertex *= cell_m_;
     }
-    return simplified_without_crossings(outline, options.tolerance_m);
+    return with_straight_edges(outline, lines, {cell_m_, options.tolerance_m, options.least_m2});
 }
 
 }  // namespace planemap::map

@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "core/geometry/bitmap.hpp"
-#include "core/geometry/crossing.hpp"
 #include "core/geometry/flat_polygon.hpp"
 #include "core/geometry/outline.hpp"
 #include "core/geometry/pose.hpp"
+#include "map/edges.hpp"
 #include "map/evidence_cells.hpp"
 
 namespace planemap::map {
@@ -17,7 +17,9 @@ namespace planemap::map {
 struct OutlineOptions {
     int min_hits = 1;           ///< evidence a cell needs to be part of the shape, 1 to 15
     double min_ring_m2 = 0.01;  ///< smaller parts and smaller holes are left out
-    double tolerance_m = 0.03;  ///< no traced vertex is further than this from the simplified outline
+    double tolerance_m =
+        0.03;             ///< no traced vertex is further than this from the simplified outline, but for
+    double least_m2 = 0;  ///< teeth and notches whose corners enclose less, see EdgeRules
 };
 
 /// Where a plane has been seen (hits) and where something beyond it was (misses): a raster in the plane that
@@ -61,9 +63,14 @@ class EvidenceGrid {
     /// The shape: cells with enough hits and no more misses than hits; slits of up to two cells closed,
     /// slivers of up to two cells left out unless they are well supported. Metres in the grid's x and y; its
     /// rings do not cross.
-    Outline outline(const OutlineOptions& options) const;
+    /// It ends at the lines where other planes meet it, if it comes within their reach: see end_at().
+    Outline outline(const OutlineOptions& options, const std::vector<MeetingLine>& lines = {}) const;
 
   private:
+    struct Shape {
+        Bitmap cells, sure;
+    };
+    Shape shape(int min_hits) const;
     void grow(int word_from, int y_from, int word_to, int y_to);
     EvidenceCells* row(int y) { return cells_.data() + static_cast<std::ptrdiff_t>(y - y0_) * words_; }
     const EvidenceCells* row(int y) const {

@@ -74,8 +74,17 @@ Intervals overlap(const Intervals& a, const Intervals& b) {
 
 }  // namespace
 
+double meeting_reach(double rms_a, double rms_b, double sine, const AdjacencyRules& rules) {
+    constexpr double kSigmas = 3;
+    return std::min(rules.gap_m, rules.slack_m + kSigmas * std::hypot(rms_a, rms_b) / sine);
+}
+
 PlaneShape::PlaneShape(const MapPlane& map_plane)
-    : id(map_plane.id), plane(map_plane.plane()), box(map_plane.box()), outline(map_plane.outline.rings()) {
+    : id(map_plane.id),
+      plane(map_plane.plane()),
+      rms(static_cast<double>(map_plane.rms)),
+      box(map_plane.box()),
+      outline(map_plane.outline.rings()) {
     const Eigen::Matrix3d& axes = box.frame_from_box.linear();
     const Eigen::Vector3d reach = axes.cwiseAbs() * box.half_extents,
                           center = box.frame_from_box.translation();
@@ -96,10 +105,15 @@ std::vector<IntersectionLine> intersection_lines(const PlaneShape& a, const Plan
     if (distance_to(plane_a, box_b) > rules.gap_m || distance_to(plane_b, box_a) > rules.gap_m) return {};
     const auto line = common_line(plane_a, plane_b, Eigen::Vector3d::Zero(), std::sin(rules.min_angle_rad));
     if (!line) return {};
+    const double sine = plane_a.normal.cross(plane_b.normal).norm(),
+                 reach = meeting_reach(first.rms, second.rms, sine, rules);
     const Intervals on_first = along_line(first, *line, rules.gap_m);
     if (on_first.empty()) return {};
+    const Intervals on_second = along_line(second, *line, rules.gap_m);
+    Intervals pieces = overlap(along_line(first, *line, reach), on_second);
+    for (const Interval& piece : overlap(on_first, along_line(second, *line, reach))) pieces.push_back(piece);
     std::vector<IntersectionLine> lines;
-    for (const Interval& piece : overlap(on_first, along_line(second, *line, rules.gap_m))) {
+    for (const Interval& piece : joined(std::move(pieces), 0)) {
         if (piece.high - piece.low < rules.min_length_m) continue;
         const auto at = [&](double along) -> Eigen::Vector3f {
             return (line->origin + along * line->direction).cast<float>();

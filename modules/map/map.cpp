@@ -21,14 +21,18 @@ MapOptions validated(const MapOptions& options) {
 }
 
 DerivationRules derivation_rules(const MapOptions& options) {
-    return {{options.outline_min_hits, options.outline_min_ring_m2, options.outline_tolerance_m},
+    // A tooth has two corners that enclose half of it each.
+    return {{options.outline_min_hits, options.outline_min_ring_m2, options.outline_tolerance_m,
+             0.5 * options.outline_min_ring_m2},
             options.min_area_m2,
             options.min_single_m2,
             options.min_keyframes};
 }
 
 AdjacencyRules adjacency_rules(const MapOptions& options) {
-    return {options.adjacency_gap_m, radians(options.adjacency_angle_deg), options.adjacency_length_m};
+    constexpr double kCells = 1.5;  // by which a shape that is drawn in cells, and closed, errs
+    return {options.adjacency_gap_m, radians(options.adjacency_angle_deg), options.adjacency_length_m,
+            kCells * options.outline_cell_m};
 }
 
 }  // namespace

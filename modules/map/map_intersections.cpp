@@ -26,30 +26,29 @@ void MapIntersections::update(PlaneMap& map, const std::vector<int>& changed_ids
             shapes_.erase(id);
         }
     }
-    std::erase_if(map.lines,
-                  [&](auto& line) { return is_changed(line.plane_a) || is_changed(line.plane_b); });
+    std::erase_if(lines_, [&](auto& line) { return is_changed(line.plane_a) || is_changed(line.plane_b); });
     std::erase_if(map.points, [&](auto& point) {
         return std::any_of(point.planes.begin(), point.planes.end(), is_changed);
     });
-    add_lines(map, changed_ids, is_changed);
+    add_lines(changed_ids, is_changed);
     add_points(map, is_changed);
+    end_lines_at_points(map);
     map.lines.shrink_to_fit();
     map.points.shrink_to_fit();
 }
 
 template <typename IsChanged>
-void MapIntersections::add_lines(PlaneMap& map, const std::vector<int>& changed_ids,
-                                 IsChanged is_changed) const {
+void MapIntersections::add_lines(const std::vector<int>& changed_ids, IsChanged is_changed) {
     for (const int a : changed_ids) {
         const auto shape_a = shapes_.find(a);
         if (shape_a == shapes_.end()) continue;
         for (const auto& [b, shape_b] : shapes_) {
             if (b == a || (b < a && is_changed(b))) continue;
             const auto lines = intersection_lines(shape_a->second, shape_b, rules_);
-            map.lines.insert(map.lines.end(), lines.begin(), lines.end());
+            lines_.insert(lines_.end(), lines.begin(), lines.end());
         }
     }
-    std::stable_sort(map.lines.begin(), map.lines.end(), [](auto& x, auto& y) {
+    std::stable_sort(lines_.begin(), lines_.end(), [](auto& x, auto& y) {
         return std::pair(x.plane_a, x.plane_b) < std::pair(y.plane_a, y.plane_b);
     });
 }
@@ -59,7 +58,7 @@ void MapIntersections::add_lines(PlaneMap& map, const std::vector<int>& changed_
 template <typename IsChanged>
 void MapIntersections::add_points(PlaneMap& map, IsChanged is_changed) {
     std::map<int, std::set<int>> above;  // adjacent planes with a larger id
-    for (const IntersectionLine& line : map.lines) above[line.plane_a].insert(line.plane_b);
+    for (const IntersectionLine& line : lines_) above[line.plane_a].insert(line.plane_b);
     std::size_t triples = 0;
     const auto add_all = [&] {
         for (const auto& [a, adjacent] : above) {
@@ -82,13 +81,40 @@ void MapIntersections::add_points(PlaneMap& map, IsChanged is_changed) {
     std::sort(map.points.begin(), map.points.end(), [](auto& x, auto& y) { return x.planes < y.planes; });
 }
 
+void MapIntersections::end_lines_at_points(PlaneMap& map) const {
+    std::map<std::pair<int, int>, std::vector<Eigen::Vector3f>> points;  // by two of their planes
+    for (const IntersectionPoint& point : map.points) {
+        const auto [a, b, c] = point.planes;
+        for (const auto& pair : {std::pair(a, b), std::pair(a, c), std::pair(b, c)})
+            points[pair].push_back(point.position);
+    }
+    map.lines = lines_;
+    const auto gap = static_cast<float>(rules_.gap_m);
+    for (IntersectionLine& line : map.lines) {
+        const auto near = points.find({line.plane_a, line.plane_b});
+        if (near == points.end()) continue;
+        const Eigen::Vector3f from = line.from, to = line.to;
+        for (Eigen::Vector3f* end : {&line.from, &line.to}) {
+            const Eigen::Vector3f at = *end;
+            float least = gap;
+            for (const Eigen::Vector3f& point : near->second) {
+                const float off = (point - at).norm();
+                // The line keeps its direction.
+                if (off > least || (point - (end == &line.from ? to : from)).norm() <= 2 * gap) continue;
+                least = off;
+                *end = point;
+            }
+        }
+    }
+}
+
 const Plane* MapIntersections::plane(int id) const {
     const auto shape = shapes_.find(id);
     return shape == shapes_.end() ? nullptr : &shape->second.plane;
 }
 
 std::size_t MapIntersections::memory_bytes() const {
-    std::size_t bytes = 0;
+    std::size_t bytes = lines_.capacity() * sizeof(IntersectionLine);
     for (const auto& [id, shape] : shapes_)
         bytes += sizeof shape + shape.outline.vertex_count() * sizeof(Eigen::Vector2d);
     return bytes;

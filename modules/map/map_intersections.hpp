@@ -16,7 +16,8 @@ class MapIntersections {
     explicit MapIntersections(const AdjacencyRules& rules) : rules_(rules) {}
 
     /// Brings lines and points of the map to what its planes say, after those with the given ids, ascending,
-    /// changed, came or went.
+    /// changed, came or went. Of the map's planes only those are read, and with the outlines that they then
+    /// have. A line that comes within the gap of a point of its planes ends there.
     void update(PlaneMap& map, const std::vector<int>& changed_ids);
 
     /// The plane as of its last change; nullptr for an unknown id.
@@ -27,12 +28,15 @@ class MapIntersections {
 
   private:
     template <typename IsChanged>
-    void add_lines(PlaneMap& map, const std::vector<int>& changed_ids, IsChanged is_changed) const;
+    void add_lines(const std::vector<int>& changed_ids, IsChanged is_changed);
     template <typename IsChanged>
     void add_points(PlaneMap& map, IsChanged is_changed);
 
+    void end_lines_at_points(PlaneMap& map) const;
+
     AdjacencyRules rules_;
-    std::map<int, PlaneShape> shapes_;  ///< of the map's planes, by id
+    std::vector<IntersectionLine> lines_;  ///< as long as both planes are there
+    std::map<int, PlaneShape> shapes_;     ///< of the map's planes, by id
     bool left_out_points_ = false;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "map/plane_derivation.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -28,6 +29,21 @@ Outline transformed(const Pose& b_from_a, Outline outline) {
     return outline;
 }
 
+/// The meetings in the x and y of the grid from which transformed() leads to the axes.
+std::vector<MeetingLine> lines_in_grid(const std::vector<Meeting>& meetings, const Pose& axes_from_world,
+                                       const Pose& axes_from_grid) {
+    const Eigen::Matrix2d grid_from_axes = axes_from_grid.linear().topLeftCorner<2, 2>().inverse();
+    const Eigen::Vector2d origin = axes_from_grid.translation().head<2>();
+    const auto in_grid = [&](const Eigen::Vector3f& p_world) -> Eigen::Vector2d {
+        return grid_from_axes * ((axes_from_world * p_world.cast<double>()).head<2>() - origin);
+    };
+    std::vector<MeetingLine> lines;
+    lines.reserve(meetings.size());
+    for (const Meeting& meeting : meetings)
+        lines.push_back({in_grid(meeting.line.from), in_grid(meeting.line.to), meeting.reach_m});
+    return lines;
+}
+
 /// Gives a region the box along the axes of a frame, around the outline, and the outline in it.
 void set_outline(PlanarRegion& region, const Pose& world_from_axes, Outline outline_axes) {
     Eigen::Vector2d low = Eigen::Vector2d::Constant(1e300), high = -low;
@@ -49,18 +65,20 @@ void set_outline(PlanarRegion& region, const Pose& world_from_axes, Outline outl
 
 }  // namespace
 
-std::optional<MapPlane> derived_plane(const PlaneEstimate& estimate, const DerivationRules& rules) {
+std::optional<MapPlane> derived_plane(const PlaneEstimate& estimate, const DerivationRules& rules,
+                                      const std::vector<Meeting>& meetings) {
     if (estimate.keyframes < rules.min_keyframes) return std::nullopt;
-    const Outline outline_grid = estimate.grid.outline(rules.outline);
+    const Pose& world_from_axes = estimate.box.frame_from_box;  // the principal ones
+    const Pose axes_from_world = world_from_axes.inverse(Eigen::Isometry),
+               axes_from_grid = axes_from_world * estimate.grid.world_from_grid();
+    const Outline outline_grid =
+        estimate.grid.outline(rules.outline, lines_in_grid(meetings, axes_from_world, axes_from_grid));
     if (outline_grid.empty()) return std::nullopt;
     PlanarRegion region;
     region.plane = estimate.plane;
     region.moments = estimate.moments;
     region.rms = rms_to(estimate.plane, estimate.moments);
-    const Pose& world_from_axes = estimate.box.frame_from_box;  // the principal ones
-    set_outline(region, world_from_axes,
-                transformed(world_from_axes.inverse(Eigen::Isometry) * estimate.grid.world_from_grid(),
-                            outline_grid));
+    set_outline(region, world_from_axes, transformed(axes_from_grid, outline_grid));
     const MapPlane derived(estimate.id, region, static_cast<std::size_t>(estimate.keyframes));
     const double least = estimate.keyframes < 2 ? rules.min_single_m2 : 0;
     if (!(derived.area > 0) || static_cast<double>(derived.area) < std::max(least, rules.min_area_m2))

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "core/plane_map.hpp"
 #include "map/evidence_grid.hpp"
@@ -17,8 +18,16 @@ struct DerivationRules {
     int min_keyframes = 1;
 };
 
-/// An estimate as a plane of the map; nothing if it is too small or too seldom seen.
-std::optional<MapPlane> derived_plane(const PlaneEstimate& estimate, const DerivationRules& rules);
+/// Where another plane meets one, world frame.
+struct Meeting {
+    IntersectionLine line;
+    double reach_m = 0;  ///< see meeting_reach()
+};
+
+/// An estimate as a plane of the map, whose outline ends at the lines where others meet it; nothing if it is
+/// too small or too seldom seen.
+std::optional<MapPlane> derived_plane(const PlaneEstimate& estimate, const DerivationRules& rules,
+                                      const std::vector<Meeting>& meetings = {});
 
 /// True when an estimate is no more than numbers away from the plane that was derived from it: few cells
 /// changed, and no part moved to note against the plane `as_drawn` that its outline was traced on.

@@ -111,6 +111,42 @@ TEST(DerivedMap, WhatIsToldGoesBeforeWhatIsFoundAndAContradictionIsSaid) {
               "mounted?");
 }
 
+TEST(DerivedMap, OutlinesEndWherePlanesMeet) {
+    DerivedMap derived = derived_map();
+    // The wall's foot is 2 cm above the floor's plane, the floor goes 3 cm past the wall.
+    const scene::Rectangle wall{scene::facing({0, 0, 3}, {0, 0, -1}, {1, 0, 0}), 1, 0.98, {}};
+    const scene::Rectangle floor{scene::facing({0, 1, 2}, {0, -1, 0}, {1, 0, 0}), 1, 1.03, {}};
+    std::vector<PlaneEstimate> estimates{drawn_estimate_of(wall, 0), drawn_estimate_of(floor, 1)};
+    derived.refresh(estimates, kPoses);
+    const PlaneMap& map = derived.map();
+    ASSERT_EQ(map.lines.size(), 1u);
+    for (const MapPlane& plane : map.planes) {
+        const Outline outline = plane.outline.rings();
+        ASSERT_EQ(outline.vertex_count(), 4u);
+        int on_line = 0;
+        for (const Eigen::Vector2d& v : outline.rings[0]) {
+            const Eigen::Vector3d p = plane.world_from_plane() * Eigen::Vector3d(v.x(), v.y(), 0);
+            on_line += std::abs(p.y() - 1) < 0.002 && std::abs(p.z() - 3) < 0.002;
+        }
+        EXPECT_EQ(on_line, 2) << plane.id;
+    }
+    EXPECT_NEAR(map.planes[0].area, 2 * 1.98, 0.06);
+    EXPECT_NEAR(map.planes[1].area, 2 * 2.03, 0.06);
+}
+
+TEST(DerivedMap, AnOutlineFollowsItsNeighboursAndIsFreeWithoutThem) {
+    DerivedMap derived = derived_map();
+    const scene::Rectangle wall{scene::facing({0, 0, 3}, {0, 0, -1}, {1, 0, 0}), 1, 0.98, {}};
+    const scene::Rectangle floor{scene::facing({0, 1, 2}, {0, -1, 0}, {1, 0, 0}), 1, 1.03, {}};
+    std::vector<PlaneEstimate> estimates{drawn_estimate_of(wall, 0), drawn_estimate_of(floor, 1)};
+    derived.refresh(estimates, kPoses);
+    const float met = derived.map().planes[1].area;
+    estimates.erase(estimates.begin());
+    derived.refresh(estimates, kPoses);
+    ASSERT_EQ(derived.map().planes.size(), 1u);
+    EXPECT_GT(derived.map().planes[0].area, met + 0.03F) << "as far as it was seen again";
+}
+
 TEST(DerivedMap, OfNothing) {
     DerivedMap derived = derived_map();
     std::vector<PlaneEstimate> none;

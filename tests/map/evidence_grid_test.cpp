@@ -5,6 +5,7 @@
 
 #include <random>
 
+#include "core/geometry/crossing.hpp"
 #include "core/scene.hpp"
 
 namespace planemap::map {

@@ -11,7 +11,7 @@
 namespace planemap::map {
 namespace {
 
-const AdjacencyRules kRules{0.15, 0.26, 0.25};
+const AdjacencyRules kRules{0.15, 0.26, 0.25, 0.15};
 
 /// Four walls, a floor and a table in the middle.
 PlaneMap room() {
@@ -82,6 +82,21 @@ TEST(MapIntersections, GoWithTheirPlanesAndFollowThem) {
     EXPECT_EQ(map.lines.size(), 4u);
     EXPECT_TRUE(map.points.empty());
     EXPECT_EQ(intersections.plane(floor), nullptr);
+}
+
+TEST(MapIntersections, LinesEndWhereThreePlanesMeet) {
+    std::vector<scene::Rectangle> planes = scene::walls(2, 1.5);
+    planes.push_back(scene::level(0, 0, 0, 1.9, 1.4));  // the floor is seen up to 10 cm before the walls
+    PlaneMap map = scene::map_of(planes);
+    MapIntersections(kRules).update(map, ids_of(map));
+    EXPECT_EQ(map.points.size(), 4u);
+    for (const IntersectionLine& line : map.lines) {
+        if (line.plane_b != 4) continue;
+        for (const Eigen::Vector3f& end : {line.from, line.to})
+            EXPECT_TRUE(std::any_of(map.points.begin(), map.points.end(), [&](const auto& point) {
+                return (point.position - end).norm() < 1e-5f;
+            }));
+    }
 }
 
 TEST(MapIntersections, OfNothing) {

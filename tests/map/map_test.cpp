@@ -10,6 +10,7 @@
 #include <random>
 #include <set>
 
+#include "core/geometry/crossing.hpp"
 #include "core/scene.hpp"
 #include "messages/sample_messages.hpp"
 

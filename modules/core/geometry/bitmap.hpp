@@ -40,6 +40,14 @@ class Bitmap {
         if (word < 0 || word >= words_ || y < y0_ || y >= y0_ + rows_) return false;
         return (row(y)[word] >> (x & 63) & 1) != 0;
     }
+    /// Cells outside are left out.
+    void set(int x, int y, bool value) {
+        const int word = (x >> 6) - word0_;
+        if (word < 0 || word >= words_ || y < y0_ || y >= y0_ + rows_) return;
+        const std::uint64_t bit = std::uint64_t{1} << (x & 63);
+        std::uint64_t& cells = row(y)[word];
+        cells = value ? cells | bit : cells & ~bit;
+    }
     std::size_t count() const;
 
     /// Sets the cells of which the centre lies inside the polygon (even-odd rule); what lies beside the

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 
 #include "core/geometry/bitmap.hpp"
@@ -134,6 +135,44 @@ void RingSimplifier::simplify(Ring& ring, double tolerance) {
         if (buffers_.keep[i] != 0) ring.push_back(path[i]);
     }
     if (ring.size() < 3 || signed_area(ring) == 0) ring.clear();
+}
+
+std::vector<std::size_t> kept_vertices(const Ring& ring, const std::vector<std::uint8_t>& fixed,
+                                       double tolerance) {
+    if (ring.size() < 3) return {};
+    const std::size_t n = ring.size();
+    const auto farthest_from = [&](const Eigen::Vector2d& p) {
+        const auto nearer = [&](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+            return (a - p).squaredNorm() < (b - p).squaredNorm();
+        };
+        return static_cast<std::size_t>(std::max_element(ring.begin(), ring.end(), nearer) - ring.begin());
+    };
+    // Two that are corners of whatever shape it is: the farthest from the middle, and from that one.
+    std::vector<std::uint8_t> anchors = fixed;
+    std::size_t anchor = static_cast<std::size_t>(std::find(fixed.begin(), fixed.end(), 1) - fixed.begin());
+    if (anchor == n) {
+        anchor = farthest_from(std::accumulate(ring.begin(), ring.end(), Eigen::Vector2d(0, 0)) /
+                               static_cast<double>(n));
+        anchors[anchor] = 1;
+    }
+    if (std::count(anchors.begin(), anchors.end(), 1) == 1) anchors[farthest_from(ring[anchor])] = 1;
+    RingSimplifier::Buffers buffers;
+    buffers.keep.assign(n + 1, 0);
+    for (std::size_t i = 0; i <= n; ++i) {
+        buffers.path.push_back(ring[(anchor + i) % n]);
+        buffers.keep[i] = anchors[(anchor + i) % n];
+    }
+    const std::vector<std::uint8_t> ends = buffers.keep;
+    for (std::size_t from = 0, to = 1; to <= n; ++to) {
+        if (ends[to] == 0) continue;
+        mark_kept(buffers.path, from, to, tolerance, buffers);
+        from = to;
+    }
+    std::vector<std::size_t> kept;
+    for (std::size_t i = 0; i < n; ++i)
+        if (buffers.keep[i] != 0) kept.push_back((anchor + i) % n);
+    std::sort(kept.begin(), kept.end());
+    return kept;
 }
 
 Outline simplified(const Outline& outline, double tolerance) {

@@ -61,6 +61,11 @@ class RingSimplifier {
 /// that collapse to fewer than three vertices are dropped.
 Outline simplified(const Outline& outline, double tolerance);
 
+/// The vertices of a ring that Douglas-Peucker keeps, ascending, of which those that are marked as fixed (one
+/// flag a vertex) are some. Fewer than three for a ring that collapses.
+std::vector<std::size_t> kept_vertices(const Ring& ring, const std::vector<std::uint8_t>& fixed,
+                                       double tolerance);
+
 /// A binary image, row-major, one byte a cell; non-zero is set.
 struct Mask {
     int width = 0, height = 0;
