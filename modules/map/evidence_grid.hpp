@@ -15,15 +15,15 @@ namespace planemap::map {
 
 /// How a plane's shape is read off its evidence.
 struct OutlineOptions {
-    int min_hits = 1;           ///< evidence a cell needs to be part of the shape, 1 to 15
+    int min_support = 1;        ///< that a cell needs to be part of the shape, 1 to 15
     double min_ring_m2 = 0.01;  ///< smaller parts and smaller holes are left out
     double tolerance_m =
         0.03;             ///< no traced vertex is further than this from the simplified outline, but for
     double least_m2 = 0;  ///< teeth and notches whose corners enclose less, see EdgeRules
 };
 
-/// Where a plane has been seen (hits) and where something beyond it was (misses): a raster in the plane that
-/// counts both for each cell, 64 cells at once. It grows with the plane's extent and not with the number of
+/// Where a plane has been seen and where something beyond it was: a raster in the plane that knows both for
+/// each cell (EvidenceCells), 64 cells at once. It grows with the plane's extent and not with the number of
 /// observations. Cells are aligned to the origin of the grid's frame.
 class EvidenceGrid {
   public:
@@ -37,30 +37,49 @@ class EvidenceGrid {
     bool empty() const { return cells_.empty(); }
     std::size_t memory_bytes() const { return cells_.capacity() * sizeof(EvidenceCells); }
 
-    /// Adds 2^strength hits (strength 0 to 2) to every cell whose centre lies inside the polygon (metres in
-    /// the grid's x, y). Returns how many cells were hit for the first time.
-    int add(const FlatPolygon& polygon_grid, int strength);
-    /// Adds another grid's counts, resampled to this one's cells.
+    /// 4 x 4 cells, of which some count.
+    struct Block {
+        Eigen::Vector2d middle;        ///< metres in the grid's x, y
+        int y, word, nibble;           ///< first row, word in a row, which four bits of it
+        std::uint16_t cells = 0xffff;  ///< of the block that count: four bits a row
+        std::uint16_t asked = 0;       ///< views, by who asks them
+        std::uint16_t missed = 0;      ///< looks that saw past it, of these
+    };
+
+    /// What `looks` looks saw after all others: the cells whose centre lies inside the polygon (metres in the
+    /// grid's x, y), with a support of 2^strength (strength 0 to 2). Returns how many cells came to the
+    /// shape; adds blocks of the cells that were never seen before to `fresh`, row after row.
+    int add(const FlatPolygon& polygon, int strength, int looks = 1, std::vector<Block>* fresh = nullptr);
+    /// The cells of a polygon, for which the grid makes room.
+    Bitmap cells_of(const FlatPolygon& polygon);
+    void add_support(const Bitmap& cells, int strength);
+    /// Looks before all others, see EvidenceCells.
+    void hit_before(const Bitmap& cells, int looks);
+    void forget_odds();
+    /// Takes another grid's odds for what was before all looks; of the same frame, and no larger.
+    void settle_on(const EvidenceGrid& before);
+    /// Adds another grid, resampled to this one's cells: of support the sum, of odds the better ones.
     void add(const EvidenceGrid& other);
 
-    /// Counts of the cell that holds a point (metres in the grid's x, y).
-    struct Counts {
-        int hits = 0, misses = 0;
+    struct Evidence {
+        int support = 0, odds = 0;
     };
-    Counts counts(const Eigen::Vector2d& p_grid) const;
+    /// Of the cell that holds a point (metres in the grid's x, y).
+    Evidence evidence(const Eigen::Vector2d& p_grid) const;
 
-    /// 4 x 4 cells of which some are uncertain (EvidenceCells::uncertain()).
-    struct Block {
-        Eigen::Vector2d middle;  ///< metres in the grid's x, y
-        int y, word, nibble;     ///< first row, word in a row, which four bits of it
-    };
-    /// Adds those between low and high to the list.
-    void uncertain_blocks(const Eigen::Vector2d& low, const Eigen::Vector2d& high,
-                          std::vector<Block>& blocks) const;
-    /// Adds 2^strength misses to the uncertain cells of a block; returns how many cells left the shape by it.
-    int add_misses(const Block& block, int strength);
+    /// Adds the blocks between low and high to the list that have cells which were seen and may still go
+    /// further down, row after row.
+    void seen_blocks(const Eigen::Vector2d& low, const Eigen::Vector2d& high,
+                     std::vector<Block>& blocks) const;
+    /// Whether a bitmap has cells in a block, or so many cells beside it.
+    bool is_near(const Bitmap& cells, const Block& block, int beside) const;
+    /// Whether looks before all others may say something of it.
+    bool is_undecided(const Block& block) const;
+    /// That looks saw past a block, after all others or before them; returns how many cells left the shape.
+    int miss(const Block& block, int looks);
+    int miss_before(const Block& block, int looks);
 
-    /// The shape: cells with enough hits and no more misses than hits; slits of up to two cells closed,
+    /// The shape: cells that are there with enough support; slits of up to two cells closed,
     /// slivers of up to two cells left out unless they are well supported. Metres in the grid's x and y; its
     /// rings do not cross.
     /// It ends at the lines where other planes meet it, if it comes within their reach: see end_at().
@@ -70,12 +89,23 @@ class EvidenceGrid {
     struct Shape {
         Bitmap cells, sure;
     };
-    Shape shape(int min_hits) const;
+    Shape shape(int min_support) const;
     void grow(int word_from, int y_from, int word_to, int y_to);
     EvidenceCells* row(int y) { return cells_.data() + static_cast<std::ptrdiff_t>(y - y0_) * words_; }
     const EvidenceCells* row(int y) const {
         return cells_.data() + static_cast<std::ptrdiff_t>(y - y0_) * words_;
     }
+    void draw(const FlatPolygon& polygon, Bitmap& inside);
+    /// f(word of the bitmap, cells of the grid) where the bitmap has any.
+    template <typename F>
+    void for_each_word(const Bitmap& cells, const F& f);
+    /// f(cells of the grid, bits) for each row of a block, and what left the shape by that.
+    template <typename F>
+    int change(const Block& block, const F& f);
+    /// Adds blocks of the cells that select(cells of the grid) picks, between rows and words.
+    template <typename Select>
+    void add_blocks(int first_row, int last_row, int first_word, int last_word, const Select& select,
+                    std::vector<Block>& blocks) const;
 
     Pose world_from_grid_ = Pose::Identity();
     double cell_m_ = 0.025;

@@ -23,10 +23,10 @@ void FoldedPlanes::fold(int keyframe_id, const StoredKeyframe& keyframe, RegionJ
         const std::size_t at =
             joiner.join(planes_, index_of(planes_.estimates(), region.plane), region.plane, seen);
         PlaneEstimate& plane = planes_.estimates()[at];
-        plane.changed_cells += joiner.draw(plane, seen.world_from_box(), region, keyframe);
+        plane.changed_cells += joiner.draw(plane, seen.world_from_box(), region, keyframe, region.looks);
         plane.count_keyframe(keyframe_id, region.keyframes);
     }
-    free_space.carve(planes_.estimates(), Viewpoint(keyframe));
+    free_space.carve(planes_.estimates(), Viewpoint(keyframe), keyframe.looks);
 }
 
 void FoldedPlanes::rename(const std::map<int, int>& id_of) {

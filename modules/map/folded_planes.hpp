@@ -19,7 +19,7 @@ class FoldedPlanes {
 
     void push_back(PlaneEstimate plane) { planes_.push_back(std::move(plane)); }
 
-    /// Takes in what a keyframe saw; its regions know their planes.
+    /// Takes in what a keyframe, or a look, saw; its regions know their planes.
     void fold(int keyframe_id, const StoredKeyframe& keyframe, RegionJoiner& joiner,
               const FreeSpace& free_space);
 

@@ -3,17 +3,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace planemap::map {
 
 namespace {
 
-/// Misses of a cell that is seen past: 2^1.
-constexpr int kMissStrength = 1;
-/// Viewpoints that a plane is carved by in a rebuild, and more of them for each square metre.
-constexpr double kViewpoints = 24, kViewpointsPerM2 = 1;
-/// Squared sine of the angle to a plane: flatter rays say nothing, a pixel is a long strip on it.
-constexpr double kGrazing2 = 0.04;
+/// Viewpoints that a block is asked of, those that see something where it is, in a rebuild.
+constexpr int kMostAsked = 24;
+/// Cells beside those that a view sees of a plane, which it does not see past: poses err sideways, too.
+constexpr int kBeside = 3;
+/// Viewpoints after which blocks that are done are left out.
+constexpr std::size_t kTidyAfter = 8;
 
 /// False for what is behind the camera, beyond its reach, or beside its pyramid.
 bool may_see(const Sight& sight, const Eigen::Vector3d& center_camera, double radius) {
@@ -31,39 +32,91 @@ bool may_see(const Sight& sight, const Eigen::Vector3d& center_camera, double ra
 }  // namespace
 
 Viewpoint::Viewpoint(const StoredKeyframe& seen)
-    : keyframe(&seen), camera_from_world(seen.world_from_camera->inverse(Eigen::Isometry)) {
-    for (const StoredRegion& region : seen.regions) {
-        const Eigen::Quaterniond q = Eigen::Quaterniond(region.camera_from_box.cast<double>()).normalized();
-        const Eigen::Vector3d normal = q * Eigen::Vector3d::UnitZ();
-        planes.push_back({normal, -normal.dot(region.center.cast<double>())});
-    }
-}
+    : keyframe(&seen),
+      camera_from_world(seen.world_from_camera->inverse(Eigen::Isometry)),
+      planes(seen_planes(seen)) {}
 
-void FreeSpace::carve(std::vector<PlaneEstimate>& planes, const Viewpoint& viewpoint) const {
-    std::vector<EvidenceGrid::Block> uncertain;
+void FreeSpace::carve(std::vector<PlaneEstimate>& planes, const Viewpoint& viewpoint, int looks) const {
+    std::vector<EvidenceGrid::Block> blocks;
     for (PlaneEstimate& plane : planes) {
         const std::optional<Footprint> footprint = footprint_of(plane, viewpoint);
         if (!footprint) continue;
-        uncertain.clear();
-        plane.grid.uncertain_blocks(footprint->low, footprint->high, uncertain);
-        carve(plane, viewpoint, *footprint, uncertain);
+        const std::vector<Bitmap> drawn = own_cells(plane, *viewpoint.keyframe);
+        std::vector<const Bitmap*> own;
+        for (const Bitmap& cells : drawn) own.push_back(&cells);
+        blocks.clear();
+        plane.grid.seen_blocks(footprint->low, footprint->high, blocks);
+        int lost = 0;
+        for_each_past(plane, viewpoint, *footprint, own, blocks,
+                      [&](const EvidenceGrid::Block& block) { lost += plane.grid.miss(block, looks); });
+        plane.changed_cells += lost;
+        plane.changed = plane.changed || lost > 0;
     }
 }
 
-void FreeSpace::carve(PlaneEstimate& plane, const std::vector<Viewpoint>& viewpoints) const {
-    std::vector<EvidenceGrid::Block> uncertain;
-    const Eigen::Vector2d everywhere = Eigen::Vector2d::Constant(1e9);
-    plane.grid.uncertain_blocks(-everywhere, everywhere, uncertain);
-    if (uncertain.empty()) return;
-    std::vector<std::pair<const Viewpoint*, Footprint>> near;
+void FreeSpace::carve_before(PlaneEstimate& plane, const std::vector<Viewpoint>& viewpoints,
+                             std::vector<EvidenceGrid::Block>& blocks) const {
+    int lost = 0;
     for (const Viewpoint& viewpoint : viewpoints) {
-        if (const auto footprint = footprint_of(plane, viewpoint)) near.emplace_back(&viewpoint, *footprint);
+        const std::optional<Footprint> footprint = footprint_of(plane, viewpoint);
+        if (!footprint) continue;
+        for_each_past(plane, viewpoint, *footprint, {}, blocks, [&](EvidenceGrid::Block& block) {
+            // More would not have counted before the cells were seen.
+            const int more = std::min(viewpoint.keyframe->looks, -EvidenceCells::kLeastOdds - block.missed);
+            lost += plane.grid.miss_before(block, more);
+            block.missed = static_cast<std::uint16_t>(block.missed + more);
+        });
     }
-    const double area = 4 * plane.box.half_extents.x() * plane.box.half_extents.y();
-    const std::size_t stride =
-        1 + near.size() / static_cast<std::size_t>(kViewpoints + kViewpointsPerM2 * area);
-    for (std::size_t i = 0; i < near.size(); i += stride)
-        carve(plane, *near[i].first, near[i].second, uncertain);
+    plane.changed_cells += lost;
+    plane.changed = plane.changed || lost > 0;
+}
+
+void FreeSpace::look_back(PlaneEstimate& plane, const std::vector<SeenCells>& seen,
+                          const std::vector<Viewpoint>& viewpoints) const {
+    const EvidenceGrid before = plane.grid;
+    plane.grid.forget_odds();
+    std::vector<EvidenceGrid::Block> blocks;
+    const Eigen::Vector2d everywhere = Eigen::Vector2d::Constant(1e9);
+    plane.grid.seen_blocks(-everywhere, everywhere, blocks);
+    std::multimap<const StoredKeyframe*, const Bitmap*> drawn;
+    for (const SeenCells& cells : seen) drawn.emplace(cells.view, &cells.cells);
+    std::vector<const Bitmap*> own;
+    auto next = seen.begin();
+    std::size_t looked = 0;
+    for (const Viewpoint& viewpoint : viewpoints) {
+        if (blocks.empty()) break;
+        const std::optional<Footprint> footprint = footprint_of(plane, viewpoint);
+        if (!footprint) continue;
+        for (; next != seen.end() && next->utime >= viewpoint.keyframe->seen_utime; ++next)
+            plane.grid.hit_before(next->cells, next->looks);
+        own.clear();
+        const auto [from, to] = drawn.equal_range(viewpoint.keyframe);
+        for (auto at = from; at != to; ++at) own.push_back(at->second);
+        for_each_past(plane, viewpoint, *footprint, own, blocks, [&](const EvidenceGrid::Block& block) {
+            plane.grid.miss_before(block, viewpoint.keyframe->looks);
+        });
+        if (++looked % kTidyAfter != 0) continue;
+        std::erase_if(blocks, [&](const EvidenceGrid::Block& block) {
+            return block.asked >= kMostAsked || !plane.grid.is_undecided(block);
+        });
+    }
+    for (; next != seen.end(); ++next) plane.grid.hit_before(next->cells, next->looks);
+    plane.grid.settle_on(before);
+}
+
+std::vector<Bitmap> FreeSpace::own_cells(PlaneEstimate& plane, const StoredKeyframe& view) {
+    std::vector<Bitmap> drawn;
+    if (plane.grid.empty()) return drawn;
+    FlatPolygon polygon;
+    const Pose grid_from_camera =
+        plane.grid.world_from_grid().inverse(Eigen::Isometry) * *view.world_from_camera;
+    for (const StoredRegion& region : view.regions) {
+        if (region.plane != plane.id || region.number < 0) continue;
+        const PlacedRegion placed(grid_from_camera, region);
+        outline_in(placed.box.frame_from_box, region, view, polygon);
+        drawn.push_back(plane.grid.cells_of(polygon));
+    }
+    return drawn;
 }
 
 /// Nothing if it falls beside the plane.
@@ -96,33 +149,34 @@ std::optional<FreeSpace::Footprint> FreeSpace::footprint_of(const PlaneEstimate&
     return footprint;
 }
 
-void FreeSpace::carve(PlaneEstimate& plane, const Viewpoint& viewpoint, const Footprint& footprint,
-                      const std::vector<EvidenceGrid::Block>& uncertain) const {
+template <typename F>
+void FreeSpace::for_each_past(const PlaneEstimate& plane, const Viewpoint& viewpoint,
+                              const Footprint& footprint, const std::vector<const Bitmap*>& own,
+                              std::vector<EvidenceGrid::Block>& blocks, const F& f) const {
     const Eigen::Vector3d origin = footprint.camera_from_grid.translation();
     const Eigen::Vector3d x = footprint.camera_from_grid.linear().col(0),
                           y = footprint.camera_from_grid.linear().col(1),
                           normal = footprint.camera_from_grid.linear().col(2);
-    int lost = 0;
+    const SeenRegions seen = viewpoint.seen();
     const auto first =
-        std::lower_bound(uncertain.begin(), uncertain.end(), footprint.low.y(),
+        std::lower_bound(blocks.begin(), blocks.end(), footprint.low.y(),
                          [](const EvidenceGrid::Block& block, double low) { return block.middle.y() < low; });
-    for (auto at = first; at != uncertain.end(); ++at) {
-        const EvidenceGrid::Block& block = *at;
+    for (auto at = first; at != blocks.end(); ++at) {
+        EvidenceGrid::Block& block = *at;
         if (block.middle.x() < footprint.low.x() || block.middle.x() > footprint.high.x()) continue;
         if (block.middle.y() > footprint.high.y()) break;  // they come row after row
         const Eigen::Vector3d p = origin + block.middle.x() * x + block.middle.y() * y;
-        const std::uint8_t region = viewpoint.keyframe->sight.region_at(p);
-        if (region == Sight::kNone) continue;
-        const double facing = normal.dot(p);
-        if (facing * facing < kGrazing2 * p.squaredNorm()) continue;
-        const Plane& beyond = viewpoint.planes[region];
-        // Depth of that region along the ray through the point.
-        const double depth = -beyond.d / beyond.normal.dot(p) * p.z();
-        if (depth > p.z() + margin_m_ + 2 * viewpoint.keyframe->noise.sigma(depth))
-            lost += plane.grid.add_misses(block, kMissStrength);
+        const std::optional<double> depth = seen.depth_behind(p);
+        if (!depth) continue;
+        const std::optional<bool> is_past = rules_.is_past(p, normal, *depth, viewpoint.keyframe->noise);
+        if (!is_past) continue;
+        ++block.asked;
+        if (!*is_past) continue;
+        const bool is_seen = std::any_of(own.begin(), own.end(), [&](const Bitmap* cells) {
+            return plane.grid.is_near(*cells, block, kBeside);
+        });
+        if (!is_seen) f(block);
     }
-    plane.changed_cells += lost;
-    plane.changed = plane.changed || lost > 0;
 }
 
 }  // namespace planemap::map

@@ -2,16 +2,20 @@
 // Free-space carving: a keyframe that sees a region beyond a plane says that the plane is not there.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
 #include "core/camera.hpp"
+#include "core/geometry/bitmap.hpp"
+#include "core/sight.hpp"
 #include "map/plane_estimate.hpp"
 #include "map/stored_keyframe.hpp"
 
 namespace planemap::map {
 
-/// A keyframe of the map as a camera: where it stands and which planes it sees. The keyframe must outlive it.
+/// A keyframe of the map, or a look, as a camera: where it stands and which planes it sees. It must outlive
+/// this.
 struct Viewpoint {
     const StoredKeyframe* keyframe;
     Pose camera_from_world;
@@ -19,21 +23,37 @@ struct Viewpoint {
 
     /// Precondition: the keyframe has a pose.
     explicit Viewpoint(const StoredKeyframe& seen);
+
+    SeenRegions seen() const { return {keyframe->sight, planes}; }
 };
 
-/// Counts misses for the cells of planes that keyframes see past.
+/// Cells of a plane that looks saw.
+struct SeenCells {
+    std::int64_t utime = 0;  ///< of the last look
+    int looks = 1;
+    Bitmap cells;
+    const StoredKeyframe* view = nullptr;  ///< that saw it; none: it went
+};
+
+/// Weighs looks that saw the cells of planes against looks that saw past them.
 class FreeSpace {
   public:
-    /// A region beyond a cell by more than margin_m and two sigma of the sensor's noise is a miss of the
-    /// cell.
-    explicit FreeSpace(double margin_m) : margin_m_(margin_m) {}
+    /// A region beyond a cell by more than margin_m, two sigma of the sensor's noise and one per cent of the
+    /// range is a miss of the cell.
+    explicit FreeSpace(double margin_m) { rules_.margin_m = margin_m; }
 
-    /// Carves what one keyframe sees past.
-    void carve(std::vector<PlaneEstimate>& planes, const Viewpoint& viewpoint) const;
-
-    /// Carves a plane by many keyframes. What is uncertain is looked for once; and as a few misses settle it,
-    /// of a thousand viewpoints of the same place some are enough: the work grows with the building.
-    void carve(PlaneEstimate& plane, const std::vector<Viewpoint>& viewpoints) const;
+    /// `looks` more looks of a viewpoint, after all others.
+    void carve(std::vector<PlaneEstimate>& planes, const Viewpoint& viewpoint, int looks) const;
+    /// What viewpoints saw past before, the newest first, in blocks of a plane's grid (row after row) that
+    /// were not looked at then.
+    void carve_before(PlaneEstimate& plane, const std::vector<Viewpoint>& viewpoints,
+                      std::vector<EvidenceGrid::Block>& blocks) const;
+    /// All that was seen of a plane and past it (support is in its grid already), going back in time: `seen`
+    /// and `viewpoints` with the newest first; where both are of one time, the cells were seen last. What the
+    /// grid holds was before. A place that many viewpoints saw is asked of the newest ones: so the work
+    /// grows with the building.
+    void look_back(PlaneEstimate& plane, const std::vector<SeenCells>& seen,
+                   const std::vector<Viewpoint>& viewpoints) const;
 
   private:
     /// Where on a plane's grid a viewpoint's image may fall.
@@ -41,11 +61,17 @@ class FreeSpace {
         Pose camera_from_grid;
         Eigen::Vector2d low, high;
     };
+    /// The cells of a plane that the regions of a view cover which are part of it.
+    static std::vector<Bitmap> own_cells(PlaneEstimate& plane, const StoredKeyframe& view);
     static std::optional<Footprint> footprint_of(const PlaneEstimate& plane, const Viewpoint& viewpoint);
-    void carve(PlaneEstimate& plane, const Viewpoint& viewpoint, const Footprint& footprint,
-               const std::vector<EvidenceGrid::Block>& uncertain) const;
+    /// f(block) for those that the viewpoint sees past; what it sees (`own`), and what lies close beside
+    /// that, it does not see past.
+    template <typename F>
+    void for_each_past(const PlaneEstimate& plane, const Viewpoint& viewpoint, const Footprint& footprint,
+                       const std::vector<const Bitmap*>& own, std::vector<EvidenceGrid::Block>& blocks,
+                       const F& f) const;
 
-    double margin_m_;
+    PastRules rules_;
 };
 
 }  // namespace planemap::map

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "map/plane_estimate.hpp"
 
@@ -34,6 +35,14 @@ void take_covered(std::vector<Eigen::Vector2d>& samples, const Pose& box_from_he
     FlatPolygon polygon;
     outline_in(box_from_heir_box, region, heir, polygon);
     std::erase_if(samples, [&](const Eigen::Vector2d& p) { return contains(polygon, p); });
+}
+
+/// Whether one saw past what the other saw.
+bool sees_change(const StoredKeyframe& gone, const StoredKeyframe& heir) {
+    const std::vector<Plane> planes = seen_planes(heir);
+    const SeenRegions one{gone.sight, gone.sight_planes}, other{heir.sight, planes};
+    const Pose heir_from_gone = heir.world_from_camera->inverse(Eigen::Isometry) * *gone.world_from_camera;
+    return has_changed(one, other, heir_from_gone, gone.noise);
 }
 
 }  // namespace
@@ -72,6 +81,21 @@ void hand_over(const StoredKeyframe& gone, const std::vector<StoredKeyframe*>& h
             take_region(*heir, region, gone, heir_from_gone);
         }
     }
+}
+
+void hand_over_looks(StoredKeyframe gone, StoredKeyframe& heir) {
+    const Pose heir_from_world = heir.world_from_camera->inverse(Eigen::Isometry);
+    const auto take = [&](StoredKeyframe view) {
+        view.keyframe_from_camera = heir_from_world * *view.world_from_camera;
+        heir.take_later(std::move(view));
+    };
+    for (StoredKeyframe& look : gone.later) take(std::move(look));
+    gone.later.clear();
+    gone.sight_planes = seen_planes(gone);
+    if (!sees_change(gone, heir)) return;
+    gone.regions = {};
+    gone.vertices = {};
+    take(std::move(gone));
 }
 
 }  // namespace planemap::map

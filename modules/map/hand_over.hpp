@@ -18,4 +18,8 @@ namespace planemap::map {
 void hand_over(const StoredKeyframe& gone, const std::vector<StoredKeyframe*>& heirs,
                const std::function<double(const StoredRegion&)>& agreement_m);
 
+/// The same for what it saw past, and for the looks from near it: they are looks from near the nearest heir
+/// then. Its own view is left out where it says nothing else than the heir's.
+void hand_over_looks(StoredKeyframe gone, StoredKeyframe& heir);
+
 }  // namespace planemap::map

@@ -49,22 +49,37 @@ bool KeyframeStore::is_usable(const PlanarRegion& region) const {
     });
 }
 
-/// Which of a keyframe's regions, by falling number of points.
-std::vector<std::size_t> KeyframeStore::usable_regions(const Keyframe& keyframe, MapLosses& losses) const {
-    std::vector<std::size_t> regions;
-    for (std::size_t i = 0; i < keyframe.regions.size(); ++i) {
-        if (!is_usable(keyframe.regions[i])) {
+/// Which of the regions, by falling number of points.
+std::vector<std::size_t> KeyframeStore::usable_regions(const std::vector<PlanarRegion>& regions,
+                                                       MapLosses& losses) const {
+    std::vector<std::size_t> usable;
+    for (std::size_t i = 0; i < regions.size(); ++i) {
+        if (!is_usable(regions[i])) {
             ++losses.regions_refused;
-        } else if (regions.size() == kMaxRegions) {
+        } else if (usable.size() == kMaxRegions) {
             ++losses.regions_too_many;
         } else {
-            regions.push_back(i);
+            usable.push_back(i);
         }
     }
-    std::stable_sort(regions.begin(), regions.end(), [&](std::size_t a, std::size_t b) {
-        return keyframe.regions[a].moments.count > keyframe.regions[b].moments.count;
+    std::stable_sort(usable.begin(), usable.end(), [&](std::size_t a, std::size_t b) {
+        return regions[a].moments.count > regions[b].moments.count;
     });
-    return regions;
+    return usable;
+}
+
+StoredKeyframe KeyframeStore::stored_view(int keyframe_id, std::int64_t utime,
+                                          const std::vector<PlanarRegion>& regions, const DepthNoise& noise,
+                                          MapLosses& losses) const {
+    const std::vector<std::size_t> usable = usable_regions(regions, losses);
+    std::vector<PlanarRegion> sorted;
+    sorted.reserve(usable.size());
+    for (const std::size_t i : usable) sorted.push_back(regions[i]);
+    StoredKeyframe view = stored(utime, sorted);
+    for (std::size_t i = 0; i < usable.size(); ++i) view.regions[i].number = static_cast<int>(usable[i]);
+    view.noise = noise;
+    view.id = keyframe_id;
+    return view;
 }
 
 KeyframeStore::Arrival KeyframeStore::add(const Keyframe& keyframe, MapLosses& losses) {
@@ -87,14 +102,71 @@ KeyframeStore::Arrival KeyframeStore::add(const Keyframe& keyframe, MapLosses& l
         return Arrival::kRefused;
     }
     newest_id_ = std::max(newest_id_, keyframe.id);
-    const std::vector<std::size_t> usable = usable_regions(keyframe, losses);
-    std::vector<PlanarRegion> regions;
-    regions.reserve(usable.size());
-    for (const std::size_t i : usable) regions.push_back(keyframe.regions[i]);
-    StoredKeyframe& kept = keyframes_[keyframe.id] = stored(keyframe.utime, regions);
-    for (std::size_t i = 0; i < usable.size(); ++i) kept.regions[i].number = static_cast<int>(usable[i]);
-    kept.noise = keyframe.noise;
+    keyframes_[keyframe.id] =
+        stored_view(keyframe.id, keyframe.utime, keyframe.regions, keyframe.noise, losses);
     return Arrival::kNew;
+}
+
+/// The keyframe that a look is from near of, or what took its place; none where that is not known.
+KeyframeStore::Anchor KeyframeStore::anchor_of(const Look& look) {
+    Anchor anchor{nullptr, look.keyframe_from_camera};
+    if (!is_near(anchor.keyframe_from_camera)) return anchor;
+    int id = look.keyframe_id;
+    std::int64_t utime = look.keyframe_utime;
+    for (std::size_t i = 0; i <= redirections_.size(); ++i) {
+        const auto known = keyframes_.find(id);
+        if (known != keyframes_.end()) {
+            if (known->second.utime == utime) anchor.keyframe = &known->second;
+            return anchor;
+        }
+        const auto heir = redirections_.find(id);
+        if (heir == redirections_.end() || heir->second.utime != utime) return anchor;
+        anchor.keyframe_from_camera = heir->second.heir_from_gone * anchor.keyframe_from_camera;
+        id = heir->second.heir_id;
+        utime = heir->second.heir_utime;
+    }
+    return anchor;
+}
+
+KeyframeStore::Looked KeyframeStore::add(const Look& look, MapLosses& losses) {
+    const Anchor anchor = anchor_of(look);
+    if (anchor.keyframe == nullptr) {
+        ++losses.looks_refused;
+        return {};
+    }
+    StoredKeyframe& keyframe = *anchor.keyframe;
+    const auto view_of_look = [&]() -> StoredKeyframe* {
+        StoredKeyframe* view = nullptr;
+        for_each_view(keyframe, [&](StoredKeyframe& other) {
+            if (other.id == look.keyframe_id && other.number == look.number) view = &other;
+        });
+        // What a keyframe that went saw is what its heir saw, where it was not kept.
+        return view == nullptr && look.number == 0 ? &keyframe : view;
+    };
+    if (StoredKeyframe* view = view_of_look()) {
+        const int before = view->looks;
+        view->see_again(look.looks, look.utime);
+        return {view, view->looks - before, false, keyframe.id};
+    }
+    if (!look.is_news()) {
+        ++losses.looks_refused;
+        return {};
+    }
+    StoredKeyframe news = stored_view(look.keyframe_id, look.utime, look.regions, keyframe.noise, losses);
+    news.number = look.number;
+    news.keyframe_from_camera = anchor.keyframe_from_camera;
+    if (keyframe.world_from_camera)
+        news.world_from_camera = *keyframe.world_from_camera * news.keyframe_from_camera;
+    keyframe.take_later(std::move(news));
+    StoredKeyframe* view = view_of_look();
+    return {view, 1, view != nullptr, keyframe.id};
+}
+
+void KeyframeStore::redirect_looks(const StoredKeyframe& gone, const StoredKeyframe& heir) {
+    constexpr std::size_t kMost = 64;
+    redirections_[gone.id] = {gone.utime, heir.id, heir.utime,
+                              heir.world_from_camera->inverse(Eigen::Isometry) * *gone.world_from_camera};
+    if (redirections_.size() > kMost) redirections_.erase(redirections_.begin());
 }
 
 void KeyframeStore::set_pose(int id, const Pose& world_from_camera) {
@@ -160,7 +232,9 @@ StoredKeyframe* KeyframeStore::place(int id) {
     const auto pose = poses_.find(id);
     const auto keyframe = keyframes_.find(id);
     if (pose == poses_.end() || keyframe == keyframes_.end()) return nullptr;
-    keyframe->second.world_from_camera = pose->second;
+    for_each_view(keyframe->second, [&](StoredKeyframe& view) {
+        view.world_from_camera = pose->second * view.keyframe_from_camera;
+    });
     return &keyframe->second;
 }
 
@@ -197,11 +271,13 @@ void KeyframeStore::retire_oldest() {
 std::map<int, std::vector<int>> KeyframeStore::sightings() const {
     std::map<int, std::vector<int>> result;
     for (const auto& [id, keyframe] : keyframes_) {
-        for (const StoredRegion& region : keyframe.regions) {
-            if (region.plane < 0) continue;
-            std::vector<int>& ids = result[region.plane];
-            if (ids.empty() || ids.back() != id) ids.push_back(id);
-        }
+        for_each_view(keyframe, [&, id = id](const StoredKeyframe& view) {
+            for (const StoredRegion& region : view.regions) {
+                if (region.plane < 0) continue;
+                std::vector<int>& ids = result[region.plane];
+                if (ids.empty() || ids.back() != id) ids.push_back(id);
+            }
+        });
     }
     return result;
 }

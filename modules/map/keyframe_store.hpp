@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/keyframe.hpp"
+#include "core/look.hpp"
 #include "map/map_losses.hpp"
 #include "map/stored_keyframe.hpp"
 
@@ -26,6 +27,15 @@ class KeyframeStore {
     /// Takes what the map needs of a keyframe, its largest regions first. Counts what it refuses, one that
     /// came before, too: who sends it again has nothing new to say.
     Arrival add(const Keyframe& keyframe, MapLosses& losses);
+    /// What became of a look: the keyframe's view that it is part of, and how many looks more saw that; none
+    /// where its keyframe is not known, or nothing is new in it.
+    struct Looked {
+        StoredKeyframe* view = nullptr;
+        int more = 0;
+        bool is_news = false;
+        int keyframe_id = -1;  ///< of the keyframe that it is from near of
+    };
+    Looked add(const Look& look, MapLosses& losses);
     /// Takes the pose of one keyframe; one that is none, or too far out, is ignored.
     void set_pose(int id, const Pose& world_from_camera);
 
@@ -45,6 +55,8 @@ class KeyframeStore {
     /// returns them. As long as there are others in the map to take over: else they stay. Call it before
     /// update().
     std::vector<StoredKeyframe> take_replaced(const std::vector<KeyframePose>& named);
+    /// Looks of a keyframe that went are looks from near this one, at their poses now, from here on.
+    void redirect_looks(const StoredKeyframe& gone, const StoredKeyframe& heir);
     /// The keyframes in the map nearest to a pose (a radian counts as a metre), the nearest first.
     std::vector<StoredKeyframe*> nearest(const Pose& world_from_camera, std::size_t count);
 
@@ -71,13 +83,28 @@ class KeyframeStore {
 
   private:
     bool is_usable(const PlanarRegion& region) const;
-    std::vector<std::size_t> usable_regions(const Keyframe& keyframe, MapLosses& losses) const;
+    StoredKeyframe stored_view(int keyframe_id, std::int64_t utime, const std::vector<PlanarRegion>& regions,
+                               const DepthNoise& noise, MapLosses& losses) const;
+    struct Anchor {
+        StoredKeyframe* keyframe = nullptr;
+        Pose keyframe_from_camera = Pose::Identity();
+    };
+    Anchor anchor_of(const Look& look);
+    std::vector<std::size_t> usable_regions(const std::vector<PlanarRegion>& regions,
+                                            MapLosses& losses) const;
 
     double max_extent_m_;
     std::map<int, StoredKeyframe> keyframes_;  ///< by id
     std::map<int, Pose> poses_;
-    std::vector<KeyframePose> named_;                      ///< by the last trajectory
-    int newest_id_ = -1;                                   ///< the largest id of a keyframe so far
+    std::vector<KeyframePose> named_;  ///< by the last trajectory
+    struct Redirection {
+        std::int64_t utime;  ///< of the keyframe that went
+        int heir_id;
+        std::int64_t heir_utime;
+        Pose heir_from_gone;
+    };
+    std::map<int, Redirection> redirections_;  ///< by the id of the keyframe that went; of the last ones
+    int newest_id_ = -1;                       ///< the largest id of a keyframe so far
     int retired_up_to_ = std::numeric_limits<int>::min();  ///< keyframes up to this id are gone for good
 };
 

@@ -22,7 +22,7 @@ MapOptions validated(const MapOptions& options) {
 
 DerivationRules derivation_rules(const MapOptions& options) {
     // A tooth has two corners that enclose half of it each.
-    return {{options.outline_min_hits, options.outline_min_ring_m2, options.outline_tolerance_m,
+    return {{options.outline_min_support, options.outline_min_ring_m2, options.outline_tolerance_m,
              0.5 * options.outline_min_ring_m2},
             options.min_area_m2,
             options.min_single_m2,
@@ -65,6 +65,21 @@ void PlaneMapper::add(const Keyframe& keyframe) {
 void PlaneMapper::add(const Keyframe& keyframe, const Pose& world_from_camera) {
     keyframes_.set_pose(keyframe.id, world_from_camera);
     add(keyframe);
+}
+
+bool PlaneMapper::add(const Look& look) {
+    const KeyframeStore::Looked looked = keyframes_.add(look, losses_);
+    if (looked.view == nullptr || !looked.view->world_from_camera) return false;
+    settled_ = false;
+    if (looked.is_news) {
+        planes_.integrate(looked.keyframe_id, *looked.view, keyframes_, losses_);
+    } else if (looked.more > 0) {
+        planes_.see_again(*looked.view, looked.more);
+    }
+    if (looked.more > 0) derived_.seen_at(look.utime);
+    const bool has_changed = planes_.has_changed();
+    refresh();
+    return has_changed;
 }
 
 void PlaneMapper::update(const KeyframeTrajectory& trajectory) {
@@ -129,9 +144,12 @@ void PlaneMapper::fold() {
 
 /// Lets keyframes go that the graph replaced; what they saw goes over to those near them.
 void PlaneMapper::hand_over_replaced(const KeyframeTrajectory& trajectory) {
-    for (const StoredKeyframe& gone : keyframes_.take_replaced(trajectory.keyframes)) {
-        hand_over(gone, keyframes_.nearest(*gone.world_from_camera, kHeirs),
+    for (StoredKeyframe& gone : keyframes_.take_replaced(trajectory.keyframes)) {
+        const std::vector<StoredKeyframe*> heirs = keyframes_.nearest(*gone.world_from_camera, kHeirs);
+        hand_over(gone, heirs,
                   [&](const StoredRegion& r) { return planes_.model().reliability(r, gone.noise).sigma_m; });
+        keyframes_.redirect_looks(gone, *heirs.front());
+        hand_over_looks(std::move(gone), *heirs.front());
         ++replaced_;
         settled_ = false;
     }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/keyframe.hpp"
+#include "core/look.hpp"
 #include "core/plane_map.hpp"
 #include "core/surfaces.hpp"
 #include "map/derived_map.hpp"
@@ -52,6 +53,10 @@ class PlaneMapper {
     void add(const Keyframe& keyframe);
     /// Takes a keyframe with its pose; an invalid pose is ignored and the keyframe waits.
     void add(const Keyframe& keyframe, const Pose& world_from_camera);
+
+    /// Takes a look: what it saw, and saw past, is evidence of a time after its keyframe. One whose keyframe
+    /// did not come is counted and ignored. Returns whether the map changed by it.
+    bool add(const Look& look);
 
     /// Takes new poses: waiting keyframes named in it enter the map, and if earlier ones moved, the map is
     /// rebuilt. Invalid poses are ignored. Keyframes that no trajectory named keep their pose. One that the

@@ -17,6 +17,7 @@ struct MapLosses {
     std::size_t keyframes_too_late = 0;   ///< that came again after they were folded
     std::size_t keyframes_far_ahead = 0;  ///< with an id more than 10,000 after the largest one
     std::size_t keyframes_of_others = 0;  ///< with the id of one in the map, and another time
+    std::size_t looks_refused = 0;        ///< of a keyframe or a state that is not known
 };
 
 }  // namespace planemap::map

@@ -4,7 +4,9 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <map>
 #include <stdexcept>
 #include <system_error>
 
@@ -20,6 +22,8 @@ namespace {
 constexpr std::int64_t kWritePeriodUs = 5000000;
 constexpr std::int64_t kSavePeriodUs = 1000000;   ///< of poses and plane ids to the journal
 constexpr std::int64_t kRetryPeriodUs = 1000000;  ///< after a write that failed
+/// In the journal, of each keyframe: as many as the map keeps.
+constexpr auto kLooksKept = static_cast<int>(StoredKeyframe::kMostLater);
 constexpr const char* kFile = "plane_map.lcmlog";
 constexpr const char* kEarlierIds = "PLANEMAP_REGION_PLANES";  ///< in journals before PLANEMAP_SURFACES
 
@@ -57,6 +61,8 @@ MapShell::MapShell(messages::Bus& bus, const MapShellOptions& options)
     if (!output_.empty()) try_output();
     bus_.subscribe(messages::channels::kKeyframe,
                    status_.guard([this](const messages::RawMessage& m) { on_keyframe(m); }), 256);
+    bus_.subscribe(messages::channels::kLook,
+                   status_.guard([this](const messages::RawMessage& m) { on_look(m); }), 256);
     bus_.subscribe(messages::channels::kTrajectory,
                    status_.guard([this](const messages::RawMessage& m) { on_trajectory(m); }), 16);
     bus_.subscribe(messages::channels::kCameraInfo,
@@ -92,6 +98,19 @@ void MapShell::on_keyframe(const messages::RawMessage& message) {
     tell();
 }
 
+void MapShell::on_look(const messages::RawMessage& message) {
+    const look_t received = messages::decode<look_t>(message.bytes);
+    const Look look = messages::from_message(received);
+    if (received.session != keyframes_of_) return status_.count_loss("looks of another odometry");
+    const bool has_changed = [&] {
+        const messages::ModuleStatus::Work work(status_);
+        return mapper_.add(look);
+    }();
+    if (journal_) journal_->add(message.channel, message.bytes);
+    tell_losses();
+    if (has_changed) publish();
+}
+
 void MapShell::on_trajectory(const messages::RawMessage& message) {
     const trajectory_t received = messages::decode<trajectory_t>(message.bytes);
     const KeyframeTrajectory trajectory = messages::from_message(received);
@@ -123,6 +142,10 @@ void MapShell::resume() {
             try {
                 if (event.channel == messages::channels::kSurfaces) {
                     surfaces = messages::from_message(messages::decode<surfaces_t>(event.bytes));
+                    return;
+                }
+                if (event.channel == messages::channels::kLook) {
+                    mapper_.add(messages::from_message(messages::decode<look_t>(event.bytes)));
                     return;
                 }
                 keyframe_t received = messages::decode<keyframe_t>(event.bytes);
@@ -161,13 +184,22 @@ void MapShell::tend_journal() {
     if (!trajectory_.empty() && now - saved_us_ >= kSavePeriodUs) save_poses_and_ids();
     if (journal_->is_due_to_compact()) {
         save_poses_and_ids();
-        std::int64_t last = -1;  // of the poses, and of the ids, only the last ones count
+        std::int64_t last = -1;     // of the poses, and of the ids, only the last ones count
+        std::map<int, int> newest;  // number of the last look of each keyframe
         journal_->replay([&](const messages::LogEvent& event) {
             if (event.channel == messages::channels::kSurfaces) last = event.number;
+            if (event.channel != messages::channels::kLook) return;
+            const auto look = messages::decode<look_t>(event.bytes);
+            newest[look.keyframe_id] = std::max(newest[look.keyframe_id], look.number);
         });
         journal_->compact([&](const messages::LogEvent& event) {
             if (event.channel == messages::channels::kKeyframe)
                 return mapper_.has_keyframe(messages::decode<keyframe_t>(event.bytes).id);
+            if (event.channel == messages::channels::kLook) {
+                const auto look = messages::decode<look_t>(event.bytes);
+                return mapper_.has_keyframe(look.keyframe_id) &&
+                       (look.number == 0 || newest[look.keyframe_id] - look.number < kLooksKept);
+            }
             return event.number >= last - 1;
         });
     }
@@ -200,6 +232,7 @@ void MapShell::tell_losses() {
     tell("keyframes that came twice", &MapLosses::keyframes_again, true);
     tell("keyframes that came again after they were folded", &MapLosses::keyframes_too_late, true);
     tell("keyframes with an id out of order", &MapLosses::keyframes_far_ahead, true);
+    tell("looks of keyframes that are not in the map", &MapLosses::looks_refused);
     tell("keyframes of another odometry, with an id that is taken", &MapLosses::keyframes_of_others, true);
     told_ = now;
 }

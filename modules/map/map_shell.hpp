@@ -31,9 +31,9 @@ struct MapShellOptions {
     bool needs_planes = false;  ///< finish() throws if the map has none
 };
 
-/// PLANEMAP_KEYFRAME and PLANEMAP_TRAJECTORY to PLANEMAP_MAP; PLANEMAP_CAMERA_INFO and PLANEMAP_ACCELERATION
-/// tell which way is up. Throws std::runtime_error naming the file for a
-/// map to start from that cannot be read, and for an output folder that cannot be one.
+/// PLANEMAP_KEYFRAME, PLANEMAP_LOOK and PLANEMAP_TRAJECTORY to PLANEMAP_MAP; PLANEMAP_CAMERA_INFO and
+/// PLANEMAP_ACCELERATION tell which way is up. Throws std::runtime_error naming the file for a map to start
+/// from that cannot be read, and for an output folder that cannot be one.
 class MapShell : public messages::Shell {
   public:
     MapShell(messages::Bus& bus, const MapShellOptions& options);
@@ -51,6 +51,7 @@ class MapShell : public messages::Shell {
 
   private:
     void on_keyframe(const messages::RawMessage& message);
+    void on_look(const messages::RawMessage& message);
     void on_trajectory(const messages::RawMessage& message);
     void on_camera(const messages::RawMessage& message);
     void on_acceleration(const messages::RawMessage& message);

@@ -32,7 +32,7 @@ struct ObservationModel {
     /// Inverse variance of a region about its plane, relative to a noise-free sensor: 0 to 1.
     double weight(const StoredRegion& region_camera, const DepthNoise& noise) const;
     Reliability reliability(const StoredRegion& region_camera, const DepthNoise& noise) const;
-    /// 2^strength hits are what it counts for in the shape, see EvidenceGrid: 2 for a near one, 0 for a far
+    /// 2^strength is the support that it gives the shape, see EvidenceCells: 2 for a near one, 0 for a far
     /// one.
     int strength(const StoredRegion& region_camera, const DepthNoise& noise) const;
 };

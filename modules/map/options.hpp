@@ -36,8 +36,8 @@ struct MapOptions {
     int fold_after = 0;
     int threads = 2;
 
-    /// Fixed: the evidence that a cell of an outline needs; a far view gives 1, a near one up to 4.
-    static constexpr int outline_min_hits = 1;
+    /// Fixed: the support that a cell of an outline needs; a far view gives 1, a near one up to 4.
+    static constexpr int outline_min_support = 1;
 
     /// Whether planes that say one surface twice become one, see unite_surfaces().
     bool unites_surfaces() const { return rules == "surfaces"; }

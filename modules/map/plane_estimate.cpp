@@ -94,7 +94,7 @@ PlaneEstimate::PlaneEstimate(const MapPlane& map_plane, double cell_m)
     for (const Eigen::Vector2d& v : polygon.vertices) extent.add(v);
     for (const double x : {-half.x(), half.x()})
         for (const double y : {-half.y(), half.y()}) extent.add({x, y});
-    for (const int strength : {2, 2, 2}) grid.add(polygon, strength);
+    for (const int strength : {2, 2, 2}) grid.add(polygon, strength, EvidenceCells::kMaxOdds);
     refit();
 }
 

@@ -60,7 +60,8 @@ struct PlaneEstimate {
     PlaneEstimate() = default;
     /// From a region; `outline` has it in world_from_box of the region.
     PlaneEstimate(const PlacedRegion& region, const FlatPolygon& outline_box, const Reliability& reliability);
-    /// From a plane of a finished map; its outline counts as well supported.
+    /// From a plane of a finished map; its outline counts as well supported and seen by as many looks
+    /// as count.
     PlaneEstimate(const MapPlane& plane, double cell_m);
 
     /// Takes a region in. The plane follows at the next refit(), the box at once.

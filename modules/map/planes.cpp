@@ -23,6 +23,24 @@ std::optional<SurfaceRules> surface_rules(const MapOptions& options) {
     return rules;
 }
 
+/// The newest of the keyframes near a view and their looks, the newest first: whether what is new in it was
+/// looked through before.
+std::vector<Viewpoint> views_before(const StoredKeyframe& view, KeyframeStore& store) {
+    constexpr std::size_t kNear = 12, kMost = 16;
+    std::vector<const StoredKeyframe*> views;
+    for (const StoredKeyframe* near : store.nearest(*view.world_from_camera, kNear)) {
+        for_each_view(*near, [&](const StoredKeyframe& other) {
+            if (other.seen_utime < view.seen_utime) views.push_back(&other);
+        });
+    }
+    std::stable_sort(views.begin(), views.end(),
+                     [](const auto* a, const auto* b) { return a->seen_utime > b->seen_utime; });
+    if (views.size() > kMost) views.resize(kMost);
+    std::vector<Viewpoint> viewpoints;
+    for (const StoredKeyframe* other : views) viewpoints.emplace_back(*other);
+    return viewpoints;
+}
+
 }  // namespace
 
 Planes::Planes(const MapOptions& options)
@@ -39,18 +57,26 @@ void Planes::start_from(PlaneEstimate plane) {
 }
 
 void Planes::integrate(int keyframe_id, KeyframeStore& store, MapLosses& losses) {
-    StoredKeyframe& keyframe = store.keyframes().at(keyframe_id);
+    for_each_view(store.keyframes().at(keyframe_id),
+                  [&](StoredKeyframe& view) { integrate(keyframe_id, view, store, losses); });
+}
+
+void Planes::integrate(int keyframe_id, StoredKeyframe& view, KeyframeStore& store, MapLosses& losses) {
+    const std::vector<Viewpoint> before = views_before(view, store);
     std::vector<std::size_t> grown;
-    for (StoredRegion& region : keyframe.regions) {
+    std::vector<EvidenceGrid::Block> fresh;
+    for (StoredRegion& region : view.regions) {
         region.plane = -1;
-        const Observation seen(keyframe, region);
+        const Observation seen(view, region);
         if (!seen.is_near()) {
             ++losses.regions_too_far;
             continue;
         }
         const std::size_t at = joiner_.join_best(planes_, ids_, seen);
         PlaneEstimate& plane = planes_.estimates()[at];
-        plane.changed_cells += joiner_.draw(plane, seen.world_from_box(), region, keyframe);
+        fresh.clear();
+        plane.changed_cells += joiner_.draw(plane, seen.world_from_box(), region, view, region.looks, &fresh);
+        free_space_.carve_before(plane, before, fresh);
         plane.count_keyframe(keyframe_id, region.keyframes);
         region.plane = plane.id;
         grown.push_back(at);
@@ -62,7 +88,27 @@ void Planes::integrate(int keyframe_id, KeyframeStore& store, MapLosses& losses)
         planes_.update(i);
     }
     merge(grown, store);
-    free_space_.carve(planes_.estimates(), Viewpoint(keyframe));
+    free_space_.carve(planes_.estimates(), Viewpoint(view), view.looks);
+}
+
+void Planes::see_again(const StoredKeyframe& view, int looks) {
+    std::map<int, PlaneEstimate*> planes;
+    for (PlaneEstimate& plane : planes_.estimates()) planes[plane.id] = &plane;
+    for (const StoredRegion& region : view.regions) {
+        const auto plane = planes.find(region.plane);
+        if (plane == planes.end() || region.number < 0) continue;
+        const Pose world_from_box = Observation(view, region).world_from_box();
+        const int came = joiner_.draw(*plane->second, world_from_box, region, view, looks);
+        plane->second->changed_cells += came;
+        plane->second->changed = plane->second->changed || came > 0;
+    }
+    free_space_.carve(planes_.estimates(), Viewpoint(view), looks);
+}
+
+bool Planes::has_changed() const {
+    constexpr int kCellsOfNote = 16;
+    return std::any_of(planes_.estimates().begin(), planes_.estimates().end(),
+                       [](const PlaneEstimate& plane) { return plane.changed_cells >= kCellsOfNote; });
 }
 
 /// Merges planes that have come to satisfy the rules.
@@ -77,16 +123,19 @@ void Planes::merge(const std::vector<std::size_t>& grown, KeyframeStore& store) 
     }
     if (merged_into.empty()) return;
     for (auto& [id, keyframe] : store.keyframes()) {
-        for (StoredRegion& region : keyframe.regions)
-            if (const auto into = merged_into.find(region.plane); into != merged_into.end())
-                region.plane = into->second;
+        for_each_view(keyframe, [&](StoredKeyframe& view) {
+            for (StoredRegion& region : view.regions)
+                if (const auto into = merged_into.find(region.plane); into != merged_into.end())
+                    region.plane = into->second;
+        });
     }
     folded_.rename(merged_into);
     count_keyframes(store);
 }
 
 void Planes::fold(int keyframe_id, const StoredKeyframe& keyframe) {
-    folded_.fold(keyframe_id, keyframe, joiner_, free_space_);
+    for_each_view(keyframe,
+                  [&](const StoredKeyframe& view) { folded_.fold(keyframe_id, view, joiner_, free_space_); });
 }
 
 void Planes::rebuild(KeyframeStore& store) {
@@ -112,8 +161,10 @@ void Planes::count_keyframes(const KeyframeStore& store) {
     }
     for (const auto& [id, keyframe] : store.keyframes()) {
         std::map<int, int> saw;  // how many keyframes' views of each plane it holds
-        for (const StoredRegion& region : keyframe.regions)
-            saw[region.plane] = std::max(saw[region.plane], region.keyframes);
+        for_each_view(keyframe, [&](const StoredKeyframe& view) {
+            for (const StoredRegion& region : view.regions)
+                saw[region.plane] = std::max(saw[region.plane], region.keyframes);
+        });
         for (const auto& [plane, keyframes] : saw) {
             if (const auto at = planes.find(plane); at != planes.end())
                 at->second->count_keyframe(id, keyframes);

@@ -32,6 +32,12 @@ class Planes {
     /// Takes the regions of a keyframe, which has a pose, into the planes that they fit best or new ones;
     /// merges planes that have come to satisfy the rules, and carves what the keyframe sees past.
     void integrate(int keyframe_id, KeyframeStore& store, MapLosses& losses);
+    /// The same of a look from near it; the store's.
+    void integrate(int keyframe_id, StoredKeyframe& view, KeyframeStore& store, MapLosses& losses);
+    /// So many more looks saw what a keyframe or a look saw.
+    void see_again(const StoredKeyframe& view, int looks);
+    /// Whether something came or went since the planes were derived that shows in an outline.
+    bool has_changed() const;
 
     /// Keeps what the keyframe saw: it may go then.
     void fold(int keyframe_id, const StoredKeyframe& keyframe);

@@ -16,13 +16,16 @@ Rebuild::Rebuild(KeyframeStore& store, FoldedPlanes& folded, PlaneIds& ids, cons
     std::vector<double> weights;
     for (auto& [id, keyframe] : store.keyframes()) {
         if (!keyframe.world_from_camera) continue;
-        for (std::size_t i = 0; i < keyframe.regions.size(); ++i) {
-            StoredRegion& region = keyframe.regions[i];
-            weights.push_back(model.weight(region, keyframe.noise) * static_cast<double>(region.count));
-            entries_.push_back({id, &keyframe, i});
-            planes_before_.push_back(region.plane);
-            region.plane = -1;
-        }
+        for_each_view(keyframe, [&, id = id](StoredKeyframe& view) {
+            for (std::size_t i = 0; i < view.regions.size(); ++i) {
+                StoredRegion& region = view.regions[i];
+                weights.push_back(model.weight(region, view.noise) * static_cast<double>(region.count));
+                entries_.push_back({id, &view, i});
+                regions_.push_back(&region);
+                planes_before_.push_back(region.plane);
+                region.plane = -1;
+            }
+        });
     }
     order_.resize(entries_.size());
     std::iota(order_.begin(), order_.end(), std::size_t{0});
@@ -76,26 +79,47 @@ void Rebuild::draw(PlaneSet& planes, const RegionJoiner& joiner, const FreeSpace
         const SeenRegion& entry = entries_[i];
         if (entry.plane != PlaneSet::none()) seen[entry.plane].push_back(&entry);
     }
-    std::vector<Viewpoint> viewpoints;
-    viewpoints.reserve(store_.keyframes().size());
-    for (const auto& [id, keyframe] : store_.keyframes()) {
-        if (keyframe.world_from_camera) viewpoints.emplace_back(keyframe);
-    }
+    const std::vector<Viewpoint> viewpoints = this->viewpoints();
     // Shapes are independent of each other.
     std::atomic<std::size_t> next{0};
     const auto work = [&] {
         RegionJoiner own = joiner;
         for (std::size_t i = next++; i < seen.size(); i = next++) {
             PlaneEstimate& plane = planes.estimates()[i];
-            for (const SeenRegion* entry : seen[i])
-                own.draw(plane, entry->world_from_box, entry->stored(), *entry->keyframe);
-            free_space.carve(plane, viewpoints);
-            plane.changed_cells = PlaneEstimate::kAllCells;
+            draw(plane, seen[i], own, free_space, viewpoints);
         }
     };
     std::vector<std::jthread> others;
     for (int i = 1; i < threads; ++i) others.emplace_back(work);
     work();
+}
+
+void Rebuild::draw(PlaneEstimate& plane, const std::vector<const SeenRegion*>& seen, RegionJoiner& joiner,
+                   const FreeSpace& free_space, const std::vector<Viewpoint>& viewpoints) const {
+    std::vector<SeenCells> cells;
+    cells.reserve(seen.size());
+    for (const SeenRegion* entry : seen) {
+        cells.push_back(joiner.draw_support(plane, entry->world_from_box, entry->stored(), *entry->keyframe));
+        if (entry->stored().number >= 0) cells.back().view = entry->keyframe;
+    }
+    std::stable_sort(cells.begin(), cells.end(),
+                     [](const SeenCells& a, const SeenCells& b) { return a.utime > b.utime; });
+    free_space.look_back(plane, cells, viewpoints);
+    plane.changed_cells = PlaneEstimate::kAllCells;
+}
+
+/// Of all views, the newest first.
+std::vector<Viewpoint> Rebuild::viewpoints() const {
+    std::vector<Viewpoint> viewpoints;
+    viewpoints.reserve(store_.keyframes().size());
+    for (const auto& [id, keyframe] : store_.keyframes()) {
+        if (!keyframe.world_from_camera) continue;
+        for_each_view(keyframe, [&](const StoredKeyframe& view) { viewpoints.emplace_back(view); });
+    }
+    std::stable_sort(viewpoints.begin(), viewpoints.end(), [](const Viewpoint& a, const Viewpoint& b) {
+        return a.keyframe->seen_utime > b.keyframe->seen_utime;
+    });
+    return viewpoints;
 }
 
 void Rebuild::carry_over_ids(PlaneSet& planes) {
@@ -110,10 +134,10 @@ void Rebuild::carry_over_ids(PlaneSet& planes) {
     }
     const std::map<int, int> id_of = ids_.carry_over(now, kept, votes, first_provisional_id_);
     for (PlaneEstimate& plane : planes.estimates()) plane.id = id_of.at(plane.id);
-    for (SeenRegion& entry : entries_) {
+    for (std::size_t i = 0; i < entries_.size(); ++i) {
+        const SeenRegion& entry = entries_[i];
         if (entry.plane == PlaneSet::none()) continue;
-        StoredRegion& region = store_.keyframes().at(entry.keyframe_id).regions[entry.region];
-        region.plane = planes.estimates()[entry.plane].id;
+        regions_[i]->plane = planes.estimates()[entry.plane].id;
     }
 }
 

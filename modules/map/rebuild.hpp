@@ -24,21 +24,25 @@ class Rebuild {
     /// Regions join the folded planes and make new ones, the weightiest first; then these are merged, and
     /// with rules of surfaces, what says one surface twice is united. `planes` is empty before.
     void join(PlaneSet& planes, RegionJoiner& joiner, const std::optional<SurfaceRules>& surfaces);
-    /// The shapes: all regions, and then what all keyframes see past.
+    /// The shapes: what all keyframes and looks see, and see past, in order of time.
     void draw(PlaneSet& planes, const RegionJoiner& joiner, const FreeSpace& free_space, int threads) const;
     /// Ids of before for planes, regions and folded planes.
     void carry_over_ids(PlaneSet& planes);
 
   private:
+    void draw(PlaneEstimate& plane, const std::vector<const SeenRegion*>& seen, RegionJoiner& joiner,
+              const FreeSpace& free_space, const std::vector<Viewpoint>& viewpoints) const;
+    std::vector<Viewpoint> viewpoints() const;
     void rename_folded(const PlaneSet& planes, const std::vector<std::size_t>& now);
 
     KeyframeStore& store_;
     FoldedPlanes& folded_;
     PlaneIds& ids_;
     int first_provisional_id_;
-    std::vector<SeenRegion> entries_;  ///< by keyframe and region; none() as plane: it is too far out
-    std::vector<int> planes_before_;   ///< of the entries
-    std::vector<std::size_t> order_;   ///< of them, the weightiest first
+    std::vector<SeenRegion> entries_;  ///< by keyframe, view and region; none() as plane: it is too far out
+    std::vector<StoredRegion*> regions_;  ///< of the entries
+    std::vector<int> planes_before_;      ///< of the entries
+    std::vector<std::size_t> order_;      ///< of them, the weightiest first
 };
 
 }  // namespace planemap::map

@@ -26,12 +26,25 @@ std::size_t RegionJoiner::join_best(PlaneSet& planes, PlaneIds& ids, const Obser
     return join(planes, at, at == PlaneSet::none() ? ids.next() : planes.estimates()[at].id, seen);
 }
 
-int RegionJoiner::draw(PlaneEstimate& plane, const Pose& world_from_box, const StoredRegion& region,
-                       const StoredKeyframe& keyframe) {
+void RegionJoiner::outline_in_grid(PlaneEstimate& plane, const Pose& world_from_box,
+                                   const StoredRegion& region, const StoredKeyframe& keyframe) {
     if (plane.grid.empty()) plane.grid = EvidenceGrid(plane.box.frame_from_box, cell_m_);
     outline_in(plane.grid.world_from_grid().inverse(Eigen::Isometry) * world_from_box, region, keyframe,
                polygon_);
-    return plane.grid.add(polygon_, model_.strength(region, keyframe.noise));
+}
+
+int RegionJoiner::draw(PlaneEstimate& plane, const Pose& world_from_box, const StoredRegion& region,
+                       const StoredKeyframe& keyframe, int looks, std::vector<EvidenceGrid::Block>* fresh) {
+    outline_in_grid(plane, world_from_box, region, keyframe);
+    return plane.grid.add(polygon_, model_.strength(region, keyframe.noise), looks, fresh);
+}
+
+SeenCells RegionJoiner::draw_support(PlaneEstimate& plane, const Pose& world_from_box,
+                                     const StoredRegion& region, const StoredKeyframe& keyframe) {
+    outline_in_grid(plane, world_from_box, region, keyframe);
+    SeenCells seen{region.utime, region.looks, plane.grid.cells_of(polygon_)};
+    plane.grid.add_support(seen.cells, model_.strength(region, keyframe.noise));
+    return seen;
 }
 
 }  // namespace planemap::map

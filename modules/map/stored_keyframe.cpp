@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <utility>
 
 #include "core/geometry/packed_outline.hpp"
 
@@ -43,13 +44,14 @@ void set_moments(StoredRegion& region, const Moments& moments) {
 
 StoredKeyframe stored(std::int64_t utime, const std::vector<PlanarRegion>& regions) {
     StoredKeyframe keyframe;
-    keyframe.utime = utime;
+    keyframe.utime = keyframe.seen_utime = utime;
     keyframe.sight = Sight(regions);
     keyframe.regions.reserve(regions.size());
     for (const PlanarRegion& region : regions) {
         StoredRegion& s = keyframe.regions.emplace_back();
         const Pose camera_from_box = level_box(region);
         s.camera_from_box = Eigen::Quaterniond(camera_from_box.linear()).normalized().cast<float>();
+        s.utime = utime;
         set_moments(s, region.moments);
         s.center = camera_from_box.translation().cast<float>();
         s.half_extents = region.box.half_extents.head<2>().cast<float>();
@@ -60,6 +62,17 @@ StoredKeyframe stored(std::int64_t utime, const std::vector<PlanarRegion>& regio
     }
     keyframe.vertices.shrink_to_fit();
     return keyframe;
+}
+
+std::vector<Plane> seen_planes(const StoredKeyframe& keyframe) {
+    if (!keyframe.sight_planes.empty()) return keyframe.sight_planes;
+    std::vector<Plane> planes;
+    for (const StoredRegion& region : keyframe.regions) {
+        const Eigen::Quaterniond q = Eigen::Quaterniond(region.camera_from_box.cast<double>()).normalized();
+        const Eigen::Vector3d normal = q * Eigen::Vector3d::UnitZ();
+        planes.push_back({normal, -normal.dot(region.center.cast<double>())});
+    }
+    return planes;
 }
 
 PlacedRegion::PlacedRegion(const Pose& world_from_camera, const StoredRegion& region) {
@@ -138,9 +151,32 @@ void take_region(StoredKeyframe& keyframe, const StoredRegion& other, const Stor
     region.last = static_cast<std::uint32_t>(keyframe.vertices.size());
 }
 
+void StoredKeyframe::see_again(int looks_now, std::int64_t utime_now) {
+    looks = std::clamp(looks_now, looks, kMostLooks);
+    seen_utime = std::max(seen_utime, utime_now);
+    for (StoredRegion& region : regions) {
+        if (region.number < 0) continue;  // another one saw it
+        region.looks = looks;
+        region.utime = seen_utime;
+    }
+}
+
+void StoredKeyframe::take_later(StoredKeyframe look) {
+    const auto at = std::upper_bound(later.begin(), later.end(), look, [](const auto& a, const auto& b) {
+        return a.seen_utime < b.seen_utime;
+    });
+    later.insert(at, std::move(look));
+    if (later.size() > kMostLater) later.erase(later.begin());
+}
+
 std::size_t memory_bytes(const StoredKeyframe& keyframe) {
-    return sizeof keyframe + keyframe.regions.capacity() * sizeof(StoredRegion) +
-           keyframe.vertices.capacity() * sizeof(std::int16_t);
+    std::size_t bytes = 0;
+    for_each_view(keyframe, [&](const StoredKeyframe& view) {
+        bytes += sizeof view + view.regions.capacity() * sizeof(StoredRegion) +
+                 view.vertices.capacity() * sizeof(std::int16_t) +
+                 view.sight_planes.capacity() * sizeof(Plane);
+    });
+    return bytes;
 }
 
 }  // namespace planemap::map

@@ -186,7 +186,8 @@ class SurfaceUnion {
             of_b.insert(seen_[j].keyframe_id);
             const auto [from, to] = of_a.equal_range(seen_[j].keyframe_id);
             for (auto at = from; at != to; ++at)
-                if (is_step(seen_[at->second], seen_[j])) stepping.insert(seen_[j].keyframe_id);
+                if (seen_[at->second].keyframe == seen_[j].keyframe && is_step(seen_[at->second], seen_[j]))
+                    stepping.insert(seen_[j].keyframe_id);
         }
         std::set<int> keyframes_a;
         for (const auto& [id, i] : of_a) keyframes_a.insert(id);

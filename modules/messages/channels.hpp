@@ -15,6 +15,7 @@ inline constexpr const char* kPose = "POSE_BODY";                            ///
 inline constexpr const char* kLocalFromOdom = "PLANEMAP_LOCAL_FROM_ODOM";    ///< bot_core.rigid_transform_t
 inline constexpr const char* kBodyFromCamera = "PLANEMAP_BODY_FROM_CAMERA";  ///< bot_core.rigid_transform_t
 inline constexpr const char* kKeyframe = "PLANEMAP_KEYFRAME";                ///< planemap.keyframe_t
+inline constexpr const char* kLook = "PLANEMAP_LOOK";                        ///< planemap.look_t
 inline constexpr const char* kTrajectory = "PLANEMAP_TRAJECTORY";            ///< planemap.trajectory_t
 inline constexpr const char* kSurfaces = "PLANEMAP_SURFACES";                ///< planemap.surfaces_t
 inline constexpr const char* kMap = "PLANEMAP_MAP";                          ///< planemap.plane_map_t

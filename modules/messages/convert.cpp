@@ -387,6 +387,36 @@ Keyframe from_message(const keyframe_t& message) {
     return keyframe;
 }
 
+look_t to_message(const Look& look, std::int32_t seq, std::int64_t session) {
+    look_t message;
+    message.session = session;
+    message.utime = look.utime;
+    message.seq = seq;
+    message.keyframe_id = look.keyframe_id;
+    message.keyframe_utime = look.keyframe_utime;
+    message.number = look.number;
+    message.looks = look.looks;
+    message.keyframe_from_camera = to_message(look.keyframe_from_camera);
+    message.regions = to_messages(look.regions);
+    message.n_regions = count32(message.regions.size());
+    return message;
+}
+
+Look from_message(const look_t& message) {
+    Look look;
+    look.utime = checked_utime(message.utime, "look.utime");
+    look.keyframe_utime = checked_utime(message.keyframe_utime, "look.keyframe_utime");
+    require(message.keyframe_id >= 0, "look.keyframe_id", "is negative");
+    require(message.number >= 0, "look.number", "is negative");
+    require(message.looks >= 1, "look.looks", "is not positive");
+    look.keyframe_id = message.keyframe_id;
+    look.number = message.number;
+    look.looks = message.looks;
+    look.keyframe_from_camera = from_message(message.keyframe_from_camera, "look.keyframe_from_camera");
+    look.regions = from_messages(message.regions);
+    return look;
+}
+
 trajectory_t to_message(const KeyframeTrajectory& trajectory, std::int32_t seq, std::int64_t session) {
     trajectory_t message;
     message.session = session;

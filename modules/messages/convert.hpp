@@ -9,6 +9,7 @@
 #include <planemap/acceleration_t.hpp>
 #include <planemap/camera_info_t.hpp>
 #include <planemap/keyframe_t.hpp>
+#include <planemap/look_t.hpp>
 #include <planemap/odometry_t.hpp>
 #include <planemap/planar_regions_t.hpp>
 #include <planemap/plane_map_t.hpp>
@@ -22,6 +23,7 @@
 #include "core/camera.hpp"
 #include "core/image.hpp"
 #include "core/keyframe.hpp"
+#include "core/look.hpp"
 #include "core/plane_map.hpp"
 #include "core/region.hpp"
 #include "core/surfaces.hpp"
@@ -64,6 +66,9 @@ Pose from_message(const bot_core::rigid_transform_t& message);
 
 keyframe_t to_message(const Keyframe& keyframe, std::int32_t seq, std::int64_t session = 0);
 Keyframe from_message(const keyframe_t& message);
+
+look_t to_message(const Look& look, std::int32_t seq, std::int64_t session = 0);
+Look from_message(const look_t& message);
 
 trajectory_t to_message(const KeyframeTrajectory& trajectory, std::int32_t seq, std::int64_t session = 0);
 KeyframeTrajectory from_message(const trajectory_t& message);

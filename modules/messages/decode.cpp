@@ -11,6 +11,7 @@
 #include <planemap/acceleration_t.hpp>
 #include <planemap/camera_info_t.hpp>
 #include <planemap/keyframe_t.hpp>
+#include <planemap/look_t.hpp>
 #include <planemap/map_size_t.hpp>
 #include <planemap/module_status_t.hpp>
 #include <planemap/odometry_t.hpp>
@@ -150,6 +151,11 @@ void walk(Walker& w, const keyframe_t*) {
     w.array(w.length("n_descriptor_bytes"), 1, "descriptors");
     walk_regions(w);
     w.skip(5 * 8 + 8, "noise");
+}
+void walk(Walker& w, const look_t*) {
+    w.skip(8 + 4 + 4 + 8 + 4 + 4 + kTransform, "look");
+    walk_regions(w);
+    w.skip(8, "session");
 }
 void walk(Walker& w, const trajectory_t*) {
     w.skip(8 + 4 + 4 + 4 + kTransform, "trajectory");
@@ -298,6 +304,7 @@ PLANEMAP_DECODES(camera_info_t)
 PLANEMAP_DECODES(planar_regions_t)
 PLANEMAP_DECODES(odometry_t)
 PLANEMAP_DECODES(keyframe_t)
+PLANEMAP_DECODES(look_t)
 PLANEMAP_DECODES(trajectory_t)
 PLANEMAP_DECODES(surfaces_t)
 PLANEMAP_DECODES(plane_map_t)

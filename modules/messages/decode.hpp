@@ -23,6 +23,7 @@ class camera_info_t;
 class planar_regions_t;
 class odometry_t;
 class keyframe_t;
+class look_t;
 class surfaces_t;
 class trajectory_t;
 class plane_map_t;

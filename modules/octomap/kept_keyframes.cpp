@@ -3,31 +3,37 @@
 
 #include <algorithm>
 #include <iterator>
+#include <set>
 
 #include "core/angle.hpp"
 
 namespace planemap::octomap {
 
-bool KeptKeyframes::keep(int id, std::shared_ptr<const StoredScan> scan, const Pose& world_from_camera) {
+bool KeptKeyframes::keep(ScanId id, std::shared_ptr<const StoredScan> scan, const Pose& world_from_camera,
+                         const ScanAnchor& anchor) {
     if (!is_valid(world_from_camera) || (last_gone_ && id <= *last_gone_)) return false;
     KeptKeyframe& keyframe = keyframes_[id];
     keyframe.scan = std::move(scan);
     keyframe.world_from_camera = world_from_camera;
+    keyframe.anchor = anchor;
     if (last_entered_ && id <= *last_entered_) mark_misplaced(keyframe);
     return true;
 }
 
 void KeptKeyframes::move(const KeyframeTrajectory& trajectory) {
     poses_.update(trajectory.keyframes);
-    poses_.keep_replaced([this](int id) { return keyframes_.contains(id); });
+    std::set<int> anchors;
+    for (const auto& [id, keyframe] : keyframes_) anchors.insert(keyframe.anchor.keyframe_id);
+    poses_.keep_replaced([&](int id) { return anchors.contains(id); });
     for (auto& [id, keyframe] : keyframes_) {
-        const std::optional<Pose> now = poses_.pose_of(id);
-        if (!now || !is_valid(*now)) continue;
-        const Pose change = keyframe.world_from_camera.inverse(Eigen::Isometry) * *now;
+        const std::optional<Pose> anchor = poses_.pose_of(keyframe.anchor.keyframe_id);
+        if (!anchor || !is_valid(*anchor)) continue;
+        const Pose now = *anchor * keyframe.anchor.keyframe_from_camera;
+        const Pose change = keyframe.world_from_camera.inverse(Eigen::Isometry) * now;
         if (change.translation().norm() <= moved_m_ && rotation_angle(change) <= radians(moved_deg_)) {
             continue;
         }
-        keyframe.world_from_camera = *now;
+        keyframe.world_from_camera = now;
         if (keyframe.inside) mark_misplaced(keyframe);
     }
 }
@@ -79,7 +85,7 @@ const KeptKeyframes::ById::value_type* KeptKeyframes::next_waiting() const {
     return next == keyframes_.end() ? nullptr : &*next;
 }
 
-void KeptKeyframes::enter(int id, std::vector<Voxel> blocks) {
+void KeptKeyframes::enter(ScanId id, std::vector<Voxel> blocks) {
     rebuilt(id, std::move(blocks));
     last_entered_ = id;
 }
@@ -89,13 +95,13 @@ void KeptKeyframes::take_misplaced() {
     misplaced_ = 0;
 }
 
-void KeptKeyframes::rebuilt(int id, std::vector<Voxel> blocks) {
+void KeptKeyframes::rebuilt(ScanId id, std::vector<Voxel> blocks) {
     KeptKeyframe& keyframe = keyframes_.at(id);
     keyframe.blocks = std::move(blocks);
     keyframe.inside = true;
 }
 
-std::pair<int, KeptKeyframe> KeptKeyframes::let_oldest_go() {
+std::pair<ScanId, KeptKeyframe> KeptKeyframes::let_oldest_go() {
     auto oldest = keyframes_.extract(keyframes_.begin());
     misplaced_ -= oldest.mapped().misplaced;
     last_gone_ = oldest.key();

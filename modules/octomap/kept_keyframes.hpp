@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <compare>
 #include <cstddef>
 #include <map>
 #include <memory>
@@ -16,10 +17,26 @@
 
 namespace planemap::octomap {
 
-/// A keyframe whose depth is kept, and how the tree holds it.
+/// Which depth image: a keyframe's own, or the n-th of the looks that came after it. In order of time.
+struct ScanId {
+    int keyframe = -1, look = 0;
+
+    ScanId(int keyframe_id) : keyframe(keyframe_id) {}  // NOLINT(google-explicit-constructor): it is one
+    ScanId(int keyframe_id, int look_number) : keyframe(keyframe_id), look(look_number) {}
+    auto operator<=>(const ScanId&) const = default;
+};
+
+/// Where a depth image was taken: about a keyframe, with which it moves.
+struct ScanAnchor {
+    int keyframe_id = -1;
+    Pose keyframe_from_camera = Pose::Identity();
+};
+
+/// A keyframe, or a look, whose depth is kept, and how the tree holds it.
 struct KeptKeyframe {
     std::shared_ptr<const StoredScan> scan;
     Pose world_from_camera;
+    ScanAnchor anchor;
     std::vector<Voxel> blocks = {};  ///< that it touches in the tree
     bool inside = false;             ///< the tree holds it
     bool misplaced = false;  ///< the tree (or what a rebuild will make of it) does not hold it as it should
@@ -30,7 +47,7 @@ struct KeptKeyframe {
 /// entered, is misplaced until a rebuild takes it.
 class KeptKeyframes {
   public:
-    using ById = std::map<int, KeptKeyframe>;
+    using ById = std::map<ScanId, KeptKeyframe>;
 
     /// Precondition: the options are valid.
     explicit KeptKeyframes(const OctomapOptions& options)
@@ -38,12 +55,13 @@ class KeptKeyframes {
 
     /// A known id replaces the earlier one. False, and nothing is taken, for an invalid pose or an id that is
     /// not above all that were let go.
-    bool keep(int id, std::shared_ptr<const StoredScan> scan, const Pose& world_from_camera);
+    bool keep(ScanId id, std::shared_ptr<const StoredScan> scan, const Pose& world_from_camera,
+              const ScanAnchor& anchor);
     /// Moves those that the trajectory moved by more than the options allow; see OctomapBuilder::update().
     void move(const KeyframeTrajectory& trajectory);
 
     const ById& all() const { return keyframes_; }
-    bool holds(int id) const { return keyframes_.contains(id); }
+    bool holds(ScanId id) const { return keyframes_.contains(id); }
     std::size_t size() const { return keyframes_.size(); }
     std::size_t misplaced() const { return misplaced_; }
     /// How many wait to enter the tree.
@@ -61,13 +79,13 @@ class KeptKeyframes {
     const ById::value_type* next_waiting() const;
     /// The tree holds this one now, where it stands, in these blocks. Here and below, `id` is one that is
     /// kept.
-    void enter(int id, std::vector<Voxel> blocks);
+    void enter(ScanId id, std::vector<Voxel> blocks);
     /// A rebuild takes in all that is misplaced.
     void take_misplaced();
     /// A rebuilt tree holds this one, in these blocks.
-    void rebuilt(int id, std::vector<Voxel> blocks);
+    void rebuilt(ScanId id, std::vector<Voxel> blocks);
     /// Lets the oldest go; its id and those below are never kept again. Precondition: there is one.
-    std::pair<int, KeptKeyframe> let_oldest_go();
+    std::pair<ScanId, KeptKeyframe> let_oldest_go();
 
   private:
     ById::const_iterator first_waiting() const;
@@ -75,9 +93,9 @@ class KeptKeyframes {
 
     double moved_m_, moved_deg_;
     ById keyframes_;
-    KeyframePoses poses_;              ///< by the trajectories
-    std::optional<int> last_entered_;  ///< highest id in the tree
-    std::optional<int> last_gone_;
+    KeyframePoses poses_;                 ///< by the trajectories
+    std::optional<ScanId> last_entered_;  ///< highest id in the tree
+    std::optional<ScanId> last_gone_;
     std::size_t misplaced_ = 0;
 };
 

@@ -22,9 +22,14 @@ OctomapBuilder::OctomapBuilder(OctomapOptions options)
 
 bool OctomapBuilder::add(int keyframe_id, const DepthImage& depth, const CameraInfo& camera,
                          const Pose& world_from_camera) {
+    return add_look(keyframe_id, depth, camera, world_from_camera, {keyframe_id, Pose::Identity()});
+}
+
+bool OctomapBuilder::add_look(ScanId id, const DepthImage& depth, const CameraInfo& camera,
+                              const Pose& world_from_camera, const ScanAnchor& anchor) {
     camera.validate();
     if (depth.width != camera.depth.width || depth.height != camera.depth.height) return false;
-    if (!keep(keyframe_id, std::make_shared<StoredScan>(depth, camera), world_from_camera)) return false;
+    if (!keep_look(id, std::make_shared<StoredScan>(depth, camera), world_from_camera, anchor)) return false;
     if (!rebuild_due()) {
         while (insert_next({})) continue;
     }
@@ -34,7 +39,12 @@ bool OctomapBuilder::add(int keyframe_id, const DepthImage& depth, const CameraI
 
 bool OctomapBuilder::keep(int keyframe_id, std::shared_ptr<const StoredScan> scan,
                           const Pose& world_from_camera) {
-    return keyframes_.keep(keyframe_id, std::move(scan), world_from_camera);
+    return keep_look(keyframe_id, std::move(scan), world_from_camera, {keyframe_id, Pose::Identity()});
+}
+
+bool OctomapBuilder::keep_look(ScanId id, std::shared_ptr<const StoredScan> scan,
+                               const Pose& world_from_camera, const ScanAnchor& anchor) {
+    return keyframes_.keep(id, std::move(scan), world_from_camera, anchor);
 }
 
 bool OctomapBuilder::update(const KeyframeTrajectory& trajectory) {

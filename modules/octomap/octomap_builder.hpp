@@ -56,8 +56,15 @@ class OctomapBuilder {
     /// Rebuilds if it is due, and brings inner nodes up to date and prunes.
     void flush();
 
+    /// The same for a look: its depth moves with the keyframe that it was tracked against. Of the looks of
+    /// one number, the last counts; they come into the tree after their keyframe.
+    bool add_look(ScanId id, const DepthImage& depth, const CameraInfo& camera, const Pose& world_from_camera,
+                  const ScanAnchor& anchor);
+
     /// add() without touching the tree: advance() will.
     bool keep(int keyframe_id, std::shared_ptr<const StoredScan> scan, const Pose& world_from_camera);
+    bool keep_look(ScanId id, std::shared_ptr<const StoredScan> scan, const Pose& world_from_camera,
+                   const ScanAnchor& anchor);
     /// Does one piece of what is due, about the work of one scan: freezes what is too much, inserts a new
     /// keyframe, or, if `may_rebuild`, goes on with the rebuild. Returns false when there was nothing to do.
     /// After a stop was requested the tree is not whole: the builder can only be destroyed.

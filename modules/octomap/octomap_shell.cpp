@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <planemap/look_t.hpp>
 #include <planemap/map_size_t.hpp>
 #include <planemap/trajectory_t.hpp>
 #include <thread>
@@ -27,6 +28,8 @@ constexpr std::size_t kFramesInHandler = 16, kFramesInBackground = 128;
 constexpr std::size_t kRecentBytes = 64 << 20;  // of frames beyond the sixteen
 // Keyframes without a pose: as many as the graph's own queue holds.
 constexpr std::size_t kMaxWaiting = 256;
+// Keyframes that the graph let go, which looks may still be tracked against.
+constexpr int kReplacedKept = 1000;
 
 }  // namespace
 
@@ -47,6 +50,8 @@ OctomapShell::OctomapShell(messages::Bus& bus, std::shared_ptr<messages::FrameDe
         status_, 8, [this](const auto& frame) { on_frame(frame); }, false);
     bus_.subscribe(messages::channels::kKeyframe,
                    status_.guard([this](const messages::RawMessage& m) { on_keyframe(m); }), 256);
+    bus_.subscribe(messages::channels::kLook,
+                   status_.guard([this](const messages::RawMessage& m) { on_look(m); }), 256);
     bus_.subscribe(messages::channels::kTrajectory,
                    status_.guard([this](const messages::RawMessage& m) { on_trajectory(m); }), 16);
 }
@@ -82,19 +87,55 @@ void OctomapShell::on_keyframe(const messages::RawMessage& message) {
     if (!keyframe_guard_.admits(received.session, received.seq, received.utime, message.bytes)) return;
     keyframes_of_ = received.session;
     watch_.came(received.id, received.previous_id, received.utime);
-    const auto recent = std::find_if(recent_.begin(), recent_.end(),
-                                     [&](const Recent& r) { return r.frame->utime() == received.utime; });
-    if (recent == recent_.end()) return drop("keyframes whose frame was gone");
-    Waiting keyframe{recent->frame, nullptr};
-    if (worker_) {
-        const messages::ModuleStatus::Work work(status_);
-        keyframe = {nullptr, std::make_shared<StoredScan>(recent->frame->depth(), recent->frame->camera())};
-    }
-    if (journal_) keep(*recent->frame, message.bytes);
-    waiting_[received.id] = std::move(keyframe);
+    if (received.id > newest_id_) looks_since_ = 0;
+    newest_id_ = std::max(newest_id_, received.id);
+    const std::shared_ptr<const messages::Frame> frame = recent(received.utime);
+    if (!frame) return drop("keyframes whose frame was gone");
+    if (journal_) keep(*frame, message.bytes);
+    waiting_[received.id] = kept(frame);
     if (waiting_.size() > kMaxWaiting) {
         waiting_.erase(waiting_.begin());
         drop("keyframes that never got a pose");
+    }
+}
+
+/// The frame of a time, if it came and is not gone.
+std::shared_ptr<const messages::Frame> OctomapShell::recent(std::int64_t utime) const {
+    const auto found = std::find_if(recent_.begin(), recent_.end(),
+                                    [&](const Recent& r) { return r.frame->utime() == utime; });
+    return found == recent_.end() ? nullptr : found->frame;
+}
+
+OctomapShell::Waiting OctomapShell::kept(const std::shared_ptr<const messages::Frame>& frame) {
+    if (!worker_) return {frame, nullptr};
+    const messages::ModuleStatus::Work work(status_);
+    return {nullptr, std::make_shared<StoredScan>(frame->depth(), frame->camera())};
+}
+
+/// A look that saw what changed: its depth comes into the tree, too.
+void OctomapShell::on_look(const messages::RawMessage& message) {
+    const look_t received = messages::decode<look_t>(message.bytes);
+    const Look look = messages::from_message(received);
+    if (look.number == 0 || received.session != keyframes_of_) return;
+    const std::shared_ptr<const messages::Frame> frame = recent(look.utime);
+    if (!frame) return drop("looks whose frame was gone");
+    looks_.push_back(
+        {{newest_id_, ++looks_since_}, {look.keyframe_id, look.keyframe_from_camera}, kept(frame)});
+    if (looks_.size() > kMaxWaiting) {
+        looks_.pop_front();
+        drop("looks whose keyframe never got a pose");
+    }
+    add_looks();
+}
+
+/// Those whose keyframe has a pose; in their order.
+void OctomapShell::add_looks() {
+    while (!looks_.empty()) {
+        const WaitingLook& look = looks_.front();
+        const std::optional<Pose> anchor = poses_.pose_of(look.anchor.keyframe_id);
+        if (!anchor || waiting_.contains(look.id.keyframe)) return;
+        add(look.id, look.depth, *anchor * look.anchor.keyframe_from_camera, look.anchor);
+        looks_.pop_front();
     }
 }
 
@@ -110,6 +151,8 @@ void OctomapShell::take(const KeyframeTrajectory& trajectory) {
     watch_.named(trajectory, messages::now_us());
     named_.clear();
     for (const KeyframePose& pose : trajectory.keyframes) named_.insert(pose.id);
+    poses_.update(trajectory.keyframes);
+    poses_.keep_replaced([&](int id) { return id > newest_id_ - kReplacedKept; });
     last_utime_ = trajectory.utime;
     last_revision_ = trajectory.revision;
     if (!worker_) builder_->update(trajectory);
@@ -118,8 +161,9 @@ void OctomapShell::take(const KeyframeTrajectory& trajectory) {
         if (waiting == waiting_.end()) continue;
         const Waiting keyframe = waiting->second;
         waiting_.erase(waiting);
-        add(pose.id, keyframe, pose.world_from_camera);
+        add(pose.id, keyframe, pose.world_from_camera, {pose.id, Pose::Identity()});
     }
+    add_looks();
     if (worker_) worker_->update(trajectory);
     unpublished_ = true;
 }
@@ -228,15 +272,16 @@ void OctomapShell::write_tree() {
     write_file(output_ / "octomap.bt", builder_->bt());
 }
 
-void OctomapShell::add(int id, const Waiting& keyframe, const Pose& world_from_camera) {
+void OctomapShell::add(ScanId id, const Waiting& keyframe, const Pose& world_from_camera,
+                       const ScanAnchor& anchor) {
     if (worker_) {
-        if (!worker_->add(id, keyframe.scan, world_from_camera))
+        if (!worker_->add(id, keyframe.scan, world_from_camera, anchor))
             return drop("keyframes that the OctoMap was too slow for");
         return status_.published();
     }
     const DepthImage& depth = keyframe.frame->depth();
     const messages::ModuleStatus::Work work(status_);
-    if (builder_->add(id, depth, keyframe.frame->camera(), world_from_camera)) {
+    if (builder_->add_look(id, depth, keyframe.frame->camera(), world_from_camera, anchor)) {
         status_.published();
     } else {
         drop("keyframes that the OctoMap refused");

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/keyframe.hpp"
+#include "core/replacement.hpp"
 #include "messages/channels.hpp"
 #include "messages/frame_decoder.hpp"
 #include "messages/journal.hpp"
@@ -34,8 +35,8 @@ struct OctomapFiles {
     std::filesystem::path journal;  ///< keyframes' depth and poses, for a process that is started again
 };
 
-/// The depth of keyframes (OPENNI_FRAME, PLANEMAP_KEYFRAME) at their poses (PLANEMAP_TRAJECTORY) into an
-/// OctoMap; its size on PLANEMAP_OCTOMAP_SIZE.
+/// The depth of keyframes, and of looks at what changed (OPENNI_FRAME, PLANEMAP_KEYFRAME, PLANEMAP_LOOK), at
+/// their poses (PLANEMAP_TRAJECTORY) into an OctoMap; its size on PLANEMAP_OCTOMAP_SIZE.
 class OctomapShell : public messages::Shell {
   public:
     OctomapShell(messages::Bus& bus, std::shared_ptr<messages::FrameDecoder> decoder,
@@ -67,6 +68,7 @@ class OctomapShell : public messages::Shell {
 
     void on_frame(const std::shared_ptr<const messages::Frame>& frame);
     void on_keyframe(const messages::RawMessage& message);
+    void on_look(const messages::RawMessage& message);
     void on_trajectory(const messages::RawMessage& message);
     void take(const KeyframeTrajectory& trajectory);
     void resume();
@@ -74,7 +76,10 @@ class OctomapShell : public messages::Shell {
     void tend_journal();
     void save_trajectory();
     void write_tree();
-    void add(int id, const Waiting& keyframe, const Pose& world_from_camera);
+    std::shared_ptr<const messages::Frame> recent(std::int64_t utime) const;
+    Waiting kept(const std::shared_ptr<const messages::Frame>& frame);
+    void add(ScanId id, const Waiting& keyframe, const Pose& world_from_camera, const ScanAnchor& anchor);
+    void add_looks();
     void drop(const char* reason, std::int64_t count = 1);
     /// In the handler: the state with everything brought up to date.
     OctomapState state();
@@ -97,6 +102,15 @@ class OctomapShell : public messages::Shell {
     std::int64_t saved_us_ = 0,
                  keyframes_of_ = 0;   ///< wall clock of the last save; session of the last keyframe
     std::map<int, Waiting> waiting_;  ///< by keyframe id
+    struct WaitingLook {
+        ScanId id;
+        ScanAnchor anchor;
+        Waiting depth;
+    };
+    std::deque<WaitingLook> looks_;  ///< that wait for their keyframe's pose
+    KeyframePoses poses_;            ///< by the trajectories
+    int newest_id_ = -1;             ///< of the keyframes that came
+    int looks_since_ = 0;            ///< the newest one
     double resolution_m_;
     std::size_t max_keyframes_;
     std::filesystem::path output_;

@@ -22,12 +22,12 @@ OctomapWorker::OctomapWorker(OctomapBuilder& builder)
 
 OctomapWorker::~OctomapWorker() = default;
 
-bool OctomapWorker::add(int keyframe_id, std::shared_ptr<const StoredScan> scan,
-                        const Pose& world_from_camera) {
+bool OctomapWorker::add(ScanId id, std::shared_ptr<const StoredScan> scan, const Pose& world_from_camera,
+                        const ScanAnchor& anchor) {
     {
         const std::lock_guard lock(mutex_);
         if (given_.size() + waiting_ >= kMaxWaiting) return false;
-        given_.push_back({keyframe_id, std::move(scan), world_from_camera});
+        given_.push_back({id, std::move(scan), world_from_camera, anchor});
     }
     changed_.notify_all();
     return true;
@@ -92,7 +92,7 @@ void OctomapWorker::take_in() {
         waiting_ = builder_.waiting() + given.size();
     }
     for (Given& g : given) {
-        if (!builder_.keep(g.keyframe_id, std::move(g.scan), g.world_from_camera)) ++now_.refused;
+        if (!builder_.keep_look(g.id, std::move(g.scan), g.world_from_camera, g.anchor)) ++now_.refused;
     }
     if (trajectory) {
         builder_.update(*trajectory);

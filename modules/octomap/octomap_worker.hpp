@@ -41,7 +41,8 @@ class OctomapWorker {
     OctomapWorker& operator=(const OctomapWorker&) = delete;
 
     /// False, and nothing is taken, when kMaxWaiting keyframes are not in the tree yet.
-    bool add(int keyframe_id, std::shared_ptr<const StoredScan> scan, const Pose& world_from_camera);
+    bool add(ScanId id, std::shared_ptr<const StoredScan> scan, const Pose& world_from_camera,
+             const ScanAnchor& anchor);
     void update(KeyframeTrajectory trajectory);
 
     /// The newest state, once; nothing until there is a newer one: every few seconds while something changes.
@@ -54,9 +55,10 @@ class OctomapWorker {
   private:
     using Clock = std::chrono::steady_clock;
     struct Given {
-        int keyframe_id;
+        ScanId id;
         std::shared_ptr<const StoredScan> scan;
         Pose world_from_camera;
+        ScanAnchor anchor;
     };
 
     void run(const std::stop_token& stop);

@@ -19,12 +19,12 @@ TreeRebuild::TreeRebuild(const KeptKeyframes& keyframes, BlockSet dirty)
     }
 }
 
-void TreeRebuild::append(int id, const KeptKeyframe& keyframe) {
+void TreeRebuild::append(ScanId id, const KeptKeyframe& keyframe) {
     plan_.push_back({id, keyframe.scan, keyframe.world_from_camera, keyframe.blocks});
     plan_.back().is_new = tree_ != nullptr;
 }
 
-void TreeRebuild::note_frozen_aside(int id) {
+void TreeRebuild::note_frozen_aside(ScanId id) {
     for (Planned& planned : plan_) planned.frozen_aside = planned.frozen_aside || planned.id == id;
 }
 

@@ -22,7 +22,7 @@ class TreeRebuild {
   public:
     /// A keyframe as the rebuild takes it, whatever becomes of it meanwhile.
     struct Planned {
-        int id;
+        ScanId id;
         std::shared_ptr<const StoredScan> scan;
         Pose world_from_camera;
         std::vector<Voxel> blocks;  ///< that it touches, as far as is known
@@ -35,9 +35,9 @@ class TreeRebuild {
     TreeRebuild(const KeptKeyframes& keyframes, BlockSet dirty);
 
     /// A keyframe that entered the tree in use since the start: it is to be in the new tree too.
-    void append(int id, const KeptKeyframe& keyframe);
+    void append(ScanId id, const KeptKeyframe& keyframe);
     /// A keyframe was frozen since the start, at another pose than it is planned with.
-    void note_frozen_aside(int id);
+    void note_frozen_aside(ScanId id);
     /// Does the work of about one scan. `tree` is the one in use, `base` that of the frozen keyframes (null:
     /// there are none). Returns false when the new tree is complete.
     bool advance(KeyframeTracer& tracer, const ::octomap::OcTree& tree, const ::octomap::OcTree* base,

@@ -104,6 +104,13 @@ void OdometryShell::publish(const Keyframe& keyframe) {
     if (sent_.size() > kMostSent) sent_.pop_front();
 }
 
+/// After its keyframe: what a frame says of the place.
+void OdometryShell::publish_look(const OdometryResult& result, std::span<const PlanarRegion> regions) {
+    if (result.keyframe) return looks_.begin(*result.keyframe);
+    if (const std::optional<Look> look = looks_.see(result.estimate, regions))
+        bus_.publish(messages::channels::kLook, messages::to_message(*look, look_seq_++, bus_.session()));
+}
+
 void OdometryShell::on_frame(std::shared_ptr<const messages::Frame> frame) {
     heard_ = true;
     Waiting input{std::move(frame), std::nullopt};
@@ -220,6 +227,7 @@ void OdometryShell::process(const Waiting& input) {
         if (!first_keyframe_) first_keyframe_ = {keyframe->id, keyframe->utime, keyframe->odom_from_camera};
         publish(*keyframe);
     }
+    publish_look(result, in.regions);
     status_.published(result.estimate.utime, messages::now_us());
     const bool is_lost = result.estimate.status == TrackingStatus::kLost;
     const char* const fault = is_lost ? fault_of_depth(frame) : nullptr;

@@ -6,18 +6,21 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <span>
 
 #include "messages/convert.hpp"
 #include "messages/frame_decoder.hpp"
 #include "messages/journal.hpp"
 #include "messages/process.hpp"
 #include "odometry/body_frame.hpp"
+#include "odometry/looks.hpp"
 #include "odometry/odometry.hpp"
 #include "odometry/registration_check.hpp"
 
 namespace planemap::odometry {
 
-/// OPENNI_FRAME and PLANEMAP_REGIONS of the same utime to PLANEMAP_ODOMETRY, POSE_BODY and PLANEMAP_KEYFRAME.
+/// OPENNI_FRAME and PLANEMAP_REGIONS of the same utime to PLANEMAP_ODOMETRY, POSE_BODY, PLANEMAP_KEYFRAME
+/// and PLANEMAP_LOOK.
 /// POSE_BODY begins when it is known how the body lies (BodyFrame): by camera.json, else by the up of
 /// PLANEMAP_MAP, which is asked until then.
 /// A frame waits for its regions until a later one's come, kMaxWaiting frames wait, or it has waited for
@@ -66,6 +69,7 @@ class OdometryShell : public messages::Shell {
     void resume();
     void tend_journal();
     void publish(const Keyframe& keyframe);
+    void publish_look(const OdometryResult& result, std::span<const PlanarRegion> regions);
     void on_status(const messages::RawMessage& message);
     void send_again();
 
@@ -84,13 +88,14 @@ class OdometryShell : public messages::Shell {
         Pose odom_from_camera;
     };
     BodyFrame body_;
+    Looks looks_;
     std::optional<FirstKeyframe> first_keyframe_;
     std::optional<Pose> odom_from_world_;
     std::optional<std::int64_t> frames_told_utime_;  ///< frame with which the body's frames were told last
     std::optional<std::int64_t> handled_utime_;      ///< of the last frame that was handled
     int missing_ = 0;                                ///< frames in a row that waited in vain
     bool heard_ = false;                             ///< a message came since the last poll()
-    std::int32_t odometry_seq_ = 0, keyframe_seq_ = 0;
+    std::int32_t odometry_seq_ = 0, keyframe_seq_ = 0, look_seq_ = 0;
     std::unique_ptr<messages::Journal> journal_;  ///< null without
     struct Sent {
         Clock::time_point at;

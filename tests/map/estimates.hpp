@@ -44,8 +44,8 @@ inline PlaneEstimate estimate_of(const Rectangle& rectangle, int id, const Relia
     return estimate;
 }
 
-/// The same with its shape drawn, seen by one keyframe with 2^strength hits.
-inline PlaneEstimate drawn_estimate_of(const Rectangle& rectangle, int id, int strength = 0) {
+/// The same with its shape drawn, seen by so many looks with a support of 2^strength.
+inline PlaneEstimate drawn_estimate_of(const Rectangle& rectangle, int id, int strength = 0, int looks = 1) {
     PlaneEstimate estimate = estimate_of(rectangle, id);
     Outline outline = scene::outline_of(rectangle);
     const Pose grid_from_face =
@@ -54,7 +54,7 @@ inline PlaneEstimate drawn_estimate_of(const Rectangle& rectangle, int id, int s
         for (Eigen::Vector2d& v : ring) v = (grid_from_face * Eigen::Vector3d(v.x(), v.y(), 0)).head<2>();
     FlatPolygon polygon;
     polygon.assign(outline);
-    estimate.grid.add(polygon, strength);
+    estimate.grid.add(polygon, strength, looks);
     estimate.count_keyframe(0, 1);
     return estimate;
 }

@@ -20,12 +20,12 @@ int add(EvidenceGrid& grid, const Outline& outline, int strength = 0) {
 }
 
 template <typename IsMissed>
-int add_misses(EvidenceGrid& grid, int strength, const IsMissed& is_missed) {
+int miss(EvidenceGrid& grid, int looks, const IsMissed& is_missed) {
     std::vector<EvidenceGrid::Block> blocks;
-    grid.uncertain_blocks({-1e9, -1e9}, {1e9, 1e9}, blocks);
+    grid.seen_blocks({-1e9, -1e9}, {1e9, 1e9}, blocks);
     int lost = 0;
     for (const EvidenceGrid::Block& block : blocks)
-        if (is_missed(block.middle)) lost += grid.add_misses(block, strength);
+        if (is_missed(block.middle)) lost += grid.miss(block, looks);
     return lost;
 }
 
@@ -59,7 +59,7 @@ TEST(EvidenceGrid, FillsTheCellsWhoseCentreIsInside) {
         for (int y = 0; y < 180; ++y) {
             for (int x = 0; x < 180; ++x) {
                 const Eigen::Vector2d centre(0.05 * (x - 89.5), 0.05 * (y - 89.5));
-                ASSERT_EQ(grid.counts(centre).hits, contains(outline, centre) ? 1 : 0);
+                ASSERT_EQ(grid.evidence(centre).support, contains(outline, centre) ? 1 : 0);
             }
         }
     }
@@ -70,7 +70,7 @@ TEST(EvidenceGrid, GrowsAndCounts) {
     add(grid, Outline{{rectangle_ring(0, 0, 1, 1)}});
     add(grid, Outline{{rectangle_ring(0.5, 0, 5, 1)}}, 1);
     EXPECT_EQ(add(grid, Outline{{rectangle_ring(-2, -2, -1, -1)}}, 2), 400);
-    const auto hits = [&](double x, double y) { return grid.counts({x, y}).hits; };
+    const auto hits = [&](double x, double y) { return grid.evidence({x, y}).support; };
     EXPECT_EQ(hits(0.2, 0.5), 1);
     EXPECT_EQ(hits(0.7, 0.5), 3);
     EXPECT_EQ(hits(4.7, 0.5), 2);
@@ -78,11 +78,11 @@ TEST(EvidenceGrid, GrowsAndCounts) {
     EXPECT_EQ(hits(-0.5, -0.5), 0);
     EXPECT_EQ(hits(1e9, -1e9), 0);
     OutlineOptions twice;
-    twice.min_hits = 3;
+    twice.min_support = 3;
     EXPECT_NEAR(area(grid.outline(twice)), 0.5 + 1, 1e-9);
     EXPECT_NEAR(area(grid.outline({})), 6, 1e-9);
     for (int i = 0; i < 300; ++i) add(grid, Outline{{rectangle_ring(0, 0, 1, 1)}}, i % 3);
-    EXPECT_EQ(hits(0.2, 0.5), EvidenceCells::kMaxCount);
+    EXPECT_EQ(hits(0.2, 0.5), EvidenceCells::kMaxSupport);
     EXPECT_EQ(hits(4.7, 0.5), 2);
 }
 
@@ -95,8 +95,8 @@ TEST(EvidenceGrid, AddsAnotherGridInAnotherFrame) {
     EXPECT_NEAR(area(grid.outline({})), area(shape), 0.06);
     const Eigen::Vector3d hole = other.world_from_grid() * Eigen::Vector3d(0.3, 0, 0);
     const Eigen::Vector3d solid = other.world_from_grid() * Eigen::Vector3d(-0.3, 0, 0);
-    EXPECT_EQ(grid.counts(hole.head<2>()).hits, 0);
-    EXPECT_EQ(grid.counts(solid.head<2>()).hits, 2);
+    EXPECT_EQ(grid.evidence(hole.head<2>()).support, 0);
+    EXPECT_EQ(grid.evidence(solid.head<2>()).support, 2);
     grid.add(EvidenceGrid(Pose::Identity(), 0.025));
     EXPECT_NEAR(area(grid.outline({})), area(shape), 0.06);
 }
@@ -122,36 +122,74 @@ TEST(EvidenceGrid, SliversNeedSupport) {
     EXPECT_NEAR(area(grid.outline(every_cell())), 1.05, 1e-9) << "seen again and again";
 }
 
-TEST(EvidenceGrid, WhatIsMissedMoreOftenThanHitGoes) {
+TEST(EvidenceGrid, WhatIsMissedAsOftenAsSeenGoesAndComesBack) {
+    const Outline plate{{rectangle_ring(0, 0, 2, 1)}};
     EvidenceGrid grid(Pose::Identity(), 0.025);
-    add(grid, Outline{{rectangle_ring(0, 0, 2, 1)}});
+    EXPECT_EQ(add(grid, plate), 3200);
     const auto left = [](const Eigen::Vector2d& p) { return p.x() < 1; };
-    EXPECT_EQ(add_misses(grid, 0, left), 0) << "as many misses as hits";
-    EXPECT_NEAR(area(grid.outline({})), 2, 1e-9);
-    EXPECT_EQ(add_misses(grid, 0, left), 1600);
+    EXPECT_EQ(miss(grid, 1, left), 1600) << "seen once, looked through once";
     EXPECT_NEAR(area(grid.outline({})), 1, 1e-9);
-    EXPECT_EQ(add_misses(grid, 0, left), 0) << "what is gone gets no more misses";
-    EXPECT_EQ(grid.counts({0.5, 0.5}).misses, 2);
-    EXPECT_EQ(grid.counts({1.5, 0.5}).misses, 0);
-    for (int i = 0; i < 3; ++i) add(grid, Outline{{rectangle_ring(0, 0, 2, 1)}}, 2);
-    EXPECT_NEAR(area(grid.outline({})), 2, 1e-9) << "seen again, from near";
-    for (int i = 0; i < 30; ++i) add_misses(grid, 2, left);
-    EXPECT_NEAR(area(grid.outline({})), 2, 1e-9) << "certain";
+    EXPECT_EQ(miss(grid, 1, left), 0) << "it is gone";
+    EXPECT_EQ(grid.evidence({0.5, 0.5}).odds, -1);
+    EXPECT_EQ(grid.evidence({1.5, 0.5}).odds, 1);
+    EXPECT_EQ(add(grid, plate), 0);
+    EXPECT_EQ(add(grid, plate), 1600) << "more often seen than looked through";
+    for (int i = 0; i < 30; ++i) add(grid, plate, 2);
+    EXPECT_EQ(miss(grid, EvidenceCells::kMaxOdds - 1, left), 0);
+    EXPECT_EQ(miss(grid, 1, left), 1600) << "whatever went before";
 }
 
 TEST(EvidenceGrid, MissesCountOnlyWhereTheyAre) {
-    const auto always = [](const Eigen::Vector2d&) { return true; };
-    EvidenceGrid whole(Pose::Identity(), 0.025), part = whole;
-    for (EvidenceGrid* grid : {&whole, &part}) add(*grid, Outline{{rectangle_ring(-3, -1, 3, 1)}});
-    add_misses(whole, 1, always);
-    EXPECT_TRUE(whole.outline({}).empty());
+    EvidenceGrid part(Pose::Identity(), 0.025);
+    add(part, Outline{{rectangle_ring(-3, -1, 3, 1)}});
     std::vector<EvidenceGrid::Block> lower, beyond;
-    part.uncertain_blocks({-10, -10}, {10, -0.1}, lower);
-    for (const EvidenceGrid::Block& block : lower) part.add_misses(block, 1);
+    part.seen_blocks({-10, -10}, {10, -0.1}, lower);
+    for (const EvidenceGrid::Block& block : lower) part.miss(block, 1);
     EXPECT_NEAR(area(part.outline({})), 6, 0.7) << "the upper half is left";
     EXPECT_FALSE(contains(part.outline({}), {0, -0.5}));
-    part.uncertain_blocks({5, 5}, {6, 6}, beyond);
+    part.seen_blocks({5, 5}, {6, 6}, beyond);
     EXPECT_TRUE(beyond.empty());
+}
+
+TEST(EvidenceGrid, TellsWhatWasNeverSeenBefore) {
+    EvidenceGrid grid(Pose::Identity(), 0.025);
+    std::vector<EvidenceGrid::Block> fresh;
+    FlatPolygon polygon;
+    polygon.assign(Outline{{rectangle_ring(0, 0, 1, 1)}});
+    grid.add(polygon, 0, 1, &fresh);
+    EXPECT_EQ(fresh.size(), 100u);
+    fresh.clear();
+    polygon.assign(Outline{{rectangle_ring(0.05, 0, 1.05, 1)}});
+    grid.add(polygon, 0, 1, &fresh);
+    EXPECT_EQ(fresh.size(), 10u);
+    int lost = 0;
+    for (const EvidenceGrid::Block& block : fresh) lost += grid.miss_before(block, 1);
+    EXPECT_EQ(lost, 80) << "only what is fresh";
+    fresh.clear();
+    grid.add(polygon, 0, 1, &fresh);
+    EXPECT_TRUE(fresh.empty());
+}
+
+TEST(EvidenceGrid, WhatWasBeforeCountsWhereLooksHaveNotDecided) {
+    const Outline plate{{rectangle_ring(0, 0, 1, 1)}}, wide{{rectangle_ring(0, 0, 2, 1)}};
+    FlatPolygon polygon;
+    for (const int looks : {1, 4, 5}) {
+        const bool have_decided = looks == EvidenceCells::kMaxOdds;
+        EvidenceGrid before(Pose::Identity(), 0.025);
+        polygon.assign(plate);
+        before.add(polygon, 2, EvidenceCells::kMaxOdds);
+        EvidenceGrid grid = before;
+        grid.forget_odds();
+        polygon.assign(wide);
+        const Bitmap cells = grid.cells_of(polygon);
+        grid.add_support(cells, 0);
+        std::vector<EvidenceGrid::Block> blocks;
+        grid.seen_blocks({-1, -1}, {3, 3}, blocks);
+        for (const EvidenceGrid::Block& block : blocks) grid.miss_before(block, looks);
+        grid.settle_on(before);
+        EXPECT_EQ(grid.evidence({0.5, 0.5}).odds, have_decided ? EvidenceCells::kLeastOdds : 5 - looks);
+        EXPECT_EQ(grid.evidence({1.5, 0.5}).odds, have_decided ? EvidenceCells::kLeastOdds : -looks);
+    }
 }
 
 TEST(EvidenceGrid, OutlinesDoNotCross) {

@@ -59,9 +59,9 @@ TEST(RegionJoiner, DrawsTheOutlineAndCountsWhatIsNew) {
     const Observation seen(keyframe, keyframe.regions[0]);
     PlaneEstimate& plane = planes.estimates()[joiner.join(planes, PlaneSet::none(), 0, seen)];
     EXPECT_TRUE(plane.grid.empty()) << "joining does not draw";
-    const int cells = joiner.draw(plane, seen.world_from_box(), seen.region, keyframe);
+    const int cells = joiner.draw(plane, seen.world_from_box(), seen.region, keyframe, 1);
     EXPECT_NEAR(cells, 1600, 90);
-    EXPECT_EQ(joiner.draw(plane, seen.world_from_box(), seen.region, keyframe), 0);
+    EXPECT_EQ(joiner.draw(plane, seen.world_from_box(), seen.region, keyframe, 1), 0);
     EXPECT_NEAR(area(plane.grid.outline({})), 1, 0.06);
 }
 

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/stamp.hpp"
+#include "messages/decode.hpp"
 #include "messages/sample_messages.hpp"
 
 namespace planemap::messages {
@@ -354,6 +355,34 @@ TEST(Convert, SurfacesOfWhichTheCountsDoNotAgreeAreRefused) {
     message = good;
     message.utime = INT64_MAX;
     EXPECT_THROW(from_message(message), MessageError);
+}
+
+TEST(Convert, LooksThereAndBack) {
+    const Look look = test::sample_look();
+    const Look back = from_message(decode<look_t>(to_bytes(to_message(look, 1, 5))));
+    EXPECT_EQ(back.utime, look.utime);
+    EXPECT_EQ(back.keyframe_id, look.keyframe_id);
+    EXPECT_EQ(back.keyframe_utime, look.keyframe_utime);
+    EXPECT_EQ(back.number, look.number);
+    EXPECT_EQ(back.looks, look.looks);
+    EXPECT_TRUE(back.keyframe_from_camera.isApprox(look.keyframe_from_camera, 1e-12));
+    ASSERT_EQ(back.regions.size(), 2u);
+    EXPECT_EQ(back.regions[1].plane.d, look.regions[1].plane.d);
+}
+
+TEST(Convert, LooksThatMakeNoSenseAreRefused) {
+    const auto refused = [](auto change) {
+        look_t message = to_message(test::sample_look(), 1);
+        change(message);
+        EXPECT_THROW(from_message(message), MessageError);
+    };
+    refused([](look_t& m) { m.utime = INT64_MAX; });
+    refused([](look_t& m) { m.keyframe_utime = INT64_MIN; });
+    refused([](look_t& m) { m.keyframe_id = -1; });
+    refused([](look_t& m) { m.number = -1; });
+    refused([](look_t& m) { m.looks = 0; });
+    refused([](look_t& m) { m.keyframe_from_camera.rotation[0] = 7; });
+    refused([](look_t& m) { m.regions[0].d = std::numeric_limits<double>::quiet_NaN(); });
 }
 
 }  // namespace

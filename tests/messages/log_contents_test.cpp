@@ -10,6 +10,7 @@
 #include <planemap/acceleration_t.hpp>
 #include <planemap/camera_info_t.hpp>
 #include <planemap/keyframe_t.hpp>
+#include <planemap/look_t.hpp>
 #include <planemap/map_size_t.hpp>
 #include <planemap/module_status_t.hpp>
 #include <planemap/odometry_t.hpp>
@@ -32,7 +33,7 @@ void expect_names(const std::string& package) {
 }
 
 TEST(LogContents, EveryTypeThatAModulePublishesOrReadsHasAName) {
-    expect_names<acceleration_t, camera_info_t, keyframe_t, map_size_t, module_status_t, odometry_t,
+    expect_names<acceleration_t, camera_info_t, keyframe_t, look_t, map_size_t, module_status_t, odometry_t,
                  planar_regions_t, plane_map_t, surfaces_t, trajectory_t>("planemap");
     expect_names<bot_core::image_t, bot_core::images_t, bot_core::pose_t, bot_core::rigid_transform_t>(
         "bot_core");

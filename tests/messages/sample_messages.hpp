@@ -73,6 +73,17 @@ inline KeyframeTrajectory sample_trajectory() {
     return trajectory;
 }
 
+inline Look sample_look() {
+    Look look;
+    look.utime = 2234567;
+    look.keyframe_id = 3;
+    look.keyframe_utime = 1234567;
+    look.number = 2;
+    look.keyframe_from_camera = make_pose({0.1, 0, 0}, Eigen::Quaterniond(1, 0.01, 0, 0));
+    look.regions = {sample_region(), sample_region(1)};
+    return look;
+}
+
 /// Of a keyframe without regions, too.
 inline Surfaces sample_surfaces() {
     return {400, {{0, {3, -1, 5}}, {2, {}}, {7, {5}}}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "map/sight.hpp"
+#include "core/sight.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 
 #include "map/wall_and_plate.hpp"
 
-namespace planemap::map {
+namespace planemap {
 namespace {
 
-using samples::two_regions;
+using map::samples::two_regions;
 using scene::facing;
 using scene::Rectangle;
 
@@ -59,4 +59,4 @@ TEST(Sight, HoldsItsRegionsInReachAndDirections) {
 }
 
 }  // namespace
-}  // namespace planemap::map
+}  // namespace planemap
