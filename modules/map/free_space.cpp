@@ -12,7 +12,7 @@ namespace {
 /// Viewpoints that a block is asked of, those that see something where it is, in a rebuild.
 constexpr int kMostAsked = 24;
 /// Cells beside those that a view sees of a plane, which it does not see past: poses err sideways, too.
-constexpr int kBeside = 3;
+constexpr int kBeside = 6;
 /// Viewpoints after which blocks that are done are left out.
 constexpr std::size_t kTidyAfter = 8;
 
@@ -169,7 +169,8 @@ void FreeSpace::for_each_past(const PlaneEstimate& plane, const Viewpoint& viewp
         const std::optional<double> depth = seen.depth_behind(p);
         if (!depth) continue;
         const std::optional<bool> is_past = rules_.is_past(p, normal, *depth, viewpoint.keyframe->noise);
-        if (!is_past) continue;
+        // From behind, what is seen past a surface is seen past the edge of the thing that it is a side of.
+        if (!is_past || normal.dot(p) > 0) continue;
         ++block.asked;
         if (!*is_past) continue;
         const bool is_seen = std::any_of(own.begin(), own.end(), [&](const Bitmap* cells) {

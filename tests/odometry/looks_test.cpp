@@ -85,7 +85,9 @@ TEST(Looks, AMovingCameraThatSeesTheSameSeesNoChange) {
     for (int i = 1; i < 20; ++i) {
         const std::optional<Look> look =
             camera.see(seen, camera_at({0.02 * i, 0.01 * i, 0.01 * i}, 0.01 * i));
-        if (look) EXPECT_EQ(look->number, 0) << "what the plate hides now is no change";
+        if (look) {
+            EXPECT_EQ(look->number, 0) << "what the plate hides now is no change";
+        }
     }
 }
 
