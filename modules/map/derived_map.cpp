@@ -67,10 +67,7 @@ bool DerivedMap::derive(PlaneEstimate& estimate, std::optional<MapPlane>& plane)
         }
     }
     estimate.changed_cells = 0;
-    DerivationRules exact = derivation_;
-    exact.outline.tolerance_m = std::min(exact.outline.tolerance_m, estimate.grid.cell_m());
-    exact.outline.least_m2 = 0;
-    plane = derived_plane(estimate, exact);
+    plane = derived_plane(estimate, derivation_);
     return true;
 }
 
@@ -98,7 +95,7 @@ void DerivedMap::label(const std::map<int, Pose>& poses, const ToldUp& told) {
 /// Where each plane meets others, by its id.
 std::map<int, std::vector<Meeting>> DerivedMap::meetings() const {
     std::map<int, std::vector<Meeting>> meetings;
-    for (const IntersectionLine& line : map_.lines) {
+    for (const IntersectionLine& line : intersections_.meetings()) {
         const MapPlane *a = map_.find(line.plane_a), *b = map_.find(line.plane_b);
         const auto sine = static_cast<double>(a->normal.cross(b->normal).norm());
         const Meeting meeting{
@@ -120,7 +117,7 @@ void DerivedMap::end_at_lines(const std::vector<PlaneEstimate>& estimates, const
         if (!std::binary_search(changed.begin(), changed.end(), estimate.id) &&
             are_alike(now, met_[estimate.id]))
             continue;
-        if (auto ended = derived_plane(estimate, derivation_, now)) {
+        if (auto ended = ended_plane(estimate, derivation_, now)) {
             ended->label = plane->label;
             *plane = std::move(*ended);
         }

@@ -279,7 +279,7 @@ EvidenceGrid::Shape EvidenceGrid::shape(int min_support) const {
     return {std::move(kept), std::move(sure)};
 }
 
-Outline EvidenceGrid::outline(const OutlineOptions& options, const std::vector<MeetingLine>& lines) const {
+Outline EvidenceGrid::traced(const OutlineOptions& options, const std::vector<MeetingLine>& lines) const {
     if (cells_.empty()) return {};
     auto [cells, sure] = shape(options.min_support);
     for (const MeetingLine& line : lines) end_at(line, cell_m_, sure, cells);
@@ -290,7 +290,16 @@ Outline EvidenceGrid::outline(const OutlineOptions& options, const std::vector<M
     for (Ring& ring : outline.rings) {
         for (Eigen::Vector2d& vertex : ring) vertex *= cell_m_;
     }
-    return with_straight_edges(outline, lines, {cell_m_, options.tolerance_m, options.least_m2});
+    return outline;
+}
+
+Outline EvidenceGrid::outline(const OutlineOptions& options, const std::vector<MeetingLine>& lines) const {
+    return with_straight_edges(traced(options, lines), lines,
+                               {cell_m_, options.tolerance_m, options.least_m2});
+}
+
+Outline EvidenceGrid::exact_outline(const OutlineOptions& options) const {
+    return simplified(traced(options, {}), std::min(cell_m_, options.tolerance_m));
 }
 
 }  // namespace planemap::map

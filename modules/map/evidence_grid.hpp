@@ -85,7 +85,11 @@ class EvidenceGrid {
     /// It ends at the lines where other planes meet it, if it comes within their reach: see end_at().
     Outline outline(const OutlineOptions& options, const std::vector<MeetingLine>& lines = {}) const;
 
+    /// The same as exact as cells are and cheap, for what is compared and not shown: rings may cross.
+    Outline exact_outline(const OutlineOptions& options) const;
+
   private:
+    Outline traced(const OutlineOptions& options, const std::vector<MeetingLine>& lines) const;
     struct Shape {
         Bitmap cells, sure;
     };

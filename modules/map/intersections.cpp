@@ -105,15 +105,10 @@ std::vector<IntersectionLine> intersection_lines(const PlaneShape& a, const Plan
     if (distance_to(plane_a, box_b) > rules.gap_m || distance_to(plane_b, box_a) > rules.gap_m) return {};
     const auto line = common_line(plane_a, plane_b, Eigen::Vector3d::Zero(), std::sin(rules.min_angle_rad));
     if (!line) return {};
-    const double sine = plane_a.normal.cross(plane_b.normal).norm(),
-                 reach = meeting_reach(first.rms, second.rms, sine, rules);
     const Intervals on_first = along_line(first, *line, rules.gap_m);
     if (on_first.empty()) return {};
-    const Intervals on_second = along_line(second, *line, rules.gap_m);
-    Intervals pieces = overlap(along_line(first, *line, reach), on_second);
-    for (const Interval& piece : overlap(on_first, along_line(second, *line, reach))) pieces.push_back(piece);
     std::vector<IntersectionLine> lines;
-    for (const Interval& piece : joined(std::move(pieces), 0)) {
+    for (const Interval& piece : overlap(on_first, along_line(second, *line, rules.gap_m))) {
         if (piece.high - piece.low < rules.min_length_m) continue;
         const auto at = [&](double along) -> Eigen::Vector3f {
             return (line->origin + along * line->direction).cast<float>();

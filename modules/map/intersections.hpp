@@ -12,15 +12,15 @@ namespace planemap::map {
 
 /// When two planes count as adjacent.
 struct AdjacencyRules {
-    double gap_m = 0.15;                   ///< each outline comes this near to the common line, at most
+    double gap_m = 0.15;                   ///< each outline comes this near to the common line
     double min_angle_rad = kParallel_rad;  ///< flatter pairs have no well-defined line
     double min_length_m = 0.15;            ///< shorter pieces of the line are left out
     double slack_m = 0.04;                 ///< by which outlines err, whatever their readings
 };
 
 /// How near to their common line two planes end that end at it: as near as outlines and the planes' readings
-/// (RMS of both about their planes) tell. Readings within their noise of both planes may be of either.
-/// `sine` is of the angle between the planes.
+/// (RMS of both about their planes) tell, and the gap at most. Readings within their noise of both planes may
+/// be of either. `sine` is of the angle between the planes.
 double meeting_reach(double rms_a, double rms_b, double sine, const AdjacencyRules& rules);
 
 /// A plane of the map unpacked for cutting it with others.
@@ -36,10 +36,9 @@ struct PlaneShape {
     explicit PlaneShape(const MapPlane& map_plane);
 };
 
-/// The pieces of the common line of two planes that lie within meeting_reach() of one outline and within the
-/// gap of the other, in order
-/// along the line; empty for planes that are nearly parallel or not adjacent. An outline that is broken (a
-/// door in a wall) breaks the line there too.
+/// The pieces of the common line of two planes that lie within the gap of both outlines, in order along the
+/// line; empty for planes that are nearly parallel or not adjacent. An outline that is broken (a door in a
+/// wall) breaks the line there too.
 std::vector<IntersectionLine> intersection_lines(const PlaneShape& a, const PlaneShape& b,
                                                  const AdjacencyRules& rules);
 

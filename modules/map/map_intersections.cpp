@@ -26,13 +26,18 @@ void MapIntersections::update(PlaneMap& map, const std::vector<int>& changed_ids
             shapes_.erase(id);
         }
     }
-    std::erase_if(lines_, [&](auto& line) { return is_changed(line.plane_a) || is_changed(line.plane_b); });
+    for (auto* lines : {&lines_, &reached_})
+        std::erase_if(*lines,
+                      [&](auto& line) { return is_changed(line.plane_a) || is_changed(line.plane_b); });
     std::erase_if(map.points, [&](auto& point) {
         return std::any_of(point.planes.begin(), point.planes.end(), is_changed);
     });
     add_lines(changed_ids, is_changed);
     add_points(map, is_changed);
-    end_lines_at_points(map);
+    map.lines = lines_;
+    end_at_points(map.points, map.lines);
+    meetings_ = reached_;
+    end_at_points(map.points, meetings_);
     map.lines.shrink_to_fit();
     map.points.shrink_to_fit();
 }
@@ -46,11 +51,19 @@ void MapIntersections::add_lines(const std::vector<int>& changed_ids, IsChanged 
             if (b == a || (b < a && is_changed(b))) continue;
             const auto lines = intersection_lines(shape_a->second, shape_b, rules_);
             lines_.insert(lines_.end(), lines.begin(), lines.end());
+            if (lines.empty()) continue;
+            AdjacencyRules nearer = rules_;
+            const Eigen::Vector3d across = shape_a->second.plane.normal.cross(shape_b.plane.normal);
+            nearer.gap_m = meeting_reach(shape_a->second.rms, shape_b.rms, across.norm(), rules_);
+            const auto reached = intersection_lines(shape_a->second, shape_b, nearer);
+            reached_.insert(reached_.end(), reached.begin(), reached.end());
         }
     }
-    std::stable_sort(lines_.begin(), lines_.end(), [](auto& x, auto& y) {
-        return std::pair(x.plane_a, x.plane_b) < std::pair(y.plane_a, y.plane_b);
-    });
+    for (auto* lines : {&lines_, &reached_}) {
+        std::stable_sort(lines->begin(), lines->end(), [](auto& x, auto& y) {
+            return std::pair(x.plane_a, x.plane_b) < std::pair(y.plane_a, y.plane_b);
+        });
+    }
 }
 
 /// Points where three planes meet of which one changed. Rooms have a few for each plane; what could be a map,
@@ -81,18 +94,18 @@ void MapIntersections::add_points(PlaneMap& map, IsChanged is_changed) {
     std::sort(map.points.begin(), map.points.end(), [](auto& x, auto& y) { return x.planes < y.planes; });
 }
 
-void MapIntersections::end_lines_at_points(PlaneMap& map) const {
-    std::map<std::pair<int, int>, std::vector<Eigen::Vector3f>> points;  // by two of their planes
-    for (const IntersectionPoint& point : map.points) {
+void MapIntersections::end_at_points(const std::vector<IntersectionPoint>& points,
+                                     std::vector<IntersectionLine>& lines) const {
+    std::map<std::pair<int, int>, std::vector<Eigen::Vector3f>> of_pair;
+    for (const IntersectionPoint& point : points) {
         const auto [a, b, c] = point.planes;
         for (const auto& pair : {std::pair(a, b), std::pair(a, c), std::pair(b, c)})
-            points[pair].push_back(point.position);
+            of_pair[pair].push_back(point.position);
     }
-    map.lines = lines_;
     const auto gap = static_cast<float>(rules_.gap_m);
-    for (IntersectionLine& line : map.lines) {
-        const auto near = points.find({line.plane_a, line.plane_b});
-        if (near == points.end()) continue;
+    for (IntersectionLine& line : lines) {
+        const auto near = of_pair.find({line.plane_a, line.plane_b});
+        if (near == of_pair.end()) continue;
         const Eigen::Vector3f from = line.from, to = line.to;
         for (Eigen::Vector3f* end : {&line.from, &line.to}) {
             const Eigen::Vector3f at = *end;
@@ -114,7 +127,8 @@ const Plane* MapIntersections::plane(int id) const {
 }
 
 std::size_t MapIntersections::memory_bytes() const {
-    std::size_t bytes = lines_.capacity() * sizeof(IntersectionLine);
+    std::size_t bytes =
+        (lines_.capacity() + reached_.capacity() + meetings_.capacity()) * sizeof(IntersectionLine);
     for (const auto& [id, shape] : shapes_)
         bytes += sizeof shape + shape.outline.vertex_count() * sizeof(Eigen::Vector2d);
     return bytes;

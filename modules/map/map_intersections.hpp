@@ -20,6 +20,8 @@ class MapIntersections {
     /// have. A line that comes within the gap of a point of its planes ends there.
     void update(PlaneMap& map, const std::vector<int>& changed_ids);
 
+    /// The parts of the lines at which both planes end, see meeting_reach().
+    const std::vector<IntersectionLine>& meetings() const { return meetings_; }
     /// The plane as of its last change; nullptr for an unknown id.
     const Plane* plane(int id) const;
     /// True if so many planes meet one another that the map does not hold all points where three do.
@@ -32,11 +34,13 @@ class MapIntersections {
     template <typename IsChanged>
     void add_points(PlaneMap& map, IsChanged is_changed);
 
-    void end_lines_at_points(PlaneMap& map) const;
+    void end_at_points(const std::vector<IntersectionPoint>& points,
+                       std::vector<IntersectionLine>& lines) const;
 
     AdjacencyRules rules_;
-    std::vector<IntersectionLine> lines_;  ///< as long as both planes are there
-    std::map<int, PlaneShape> shapes_;     ///< of the map's planes, by id
+    std::vector<IntersectionLine> lines_, reached_;  ///< as long as both planes are there
+    std::vector<IntersectionLine> meetings_;
+    std::map<int, PlaneShape> shapes_;  ///< of the map's planes, by id
     bool left_out_points_ = false;
 };
 

@@ -32,9 +32,7 @@ OptionList options_of(MapOptions& options) {
              "A view that sees past a plane's cell by more than this (and 2 sigmas of the sensor's noise) "
              "counts against the cell");
     list.add("adjacency_gap_m", options.adjacency_gap_m, {0, 10},
-             "Two planes meet where both outlines come as near to their common line as cells and readings' "
-             "noise tell, and this near at most",
-             kExpert);
+             "Two planes meet where both outlines come this near to their common line", kExpert);
     list.add("adjacency_angle_deg", options.adjacency_angle_deg, {1, 90},
              "Two planes at a smaller angle get no intersection line", kExpert);
     list.add("adjacency_length_m", options.adjacency_length_m, {0, 100},

@@ -18,7 +18,7 @@ struct MapOptions {
     double agreement_m = 0.01;
 
     double outline_cell_m = 0.025;
-    double outline_tolerance_m = 0.05;
+    double outline_tolerance_m = 0.04;
     double outline_min_ring_m2 = 0.01;
     double see_through_m = 0.05;
 

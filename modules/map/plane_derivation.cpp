@@ -63,27 +63,38 @@ void set_outline(PlanarRegion& region, const Pose& world_from_axes, Outline outl
     region.outline = std::move(outline_axes);
 }
 
-}  // namespace
-
-std::optional<MapPlane> derived_plane(const PlaneEstimate& estimate, const DerivationRules& rules,
-                                      const std::vector<Meeting>& meetings) {
-    if (estimate.keyframes < rules.min_keyframes) return std::nullopt;
-    const Pose& world_from_axes = estimate.box.frame_from_box;  // the principal ones
-    const Pose axes_from_world = world_from_axes.inverse(Eigen::Isometry),
-               axes_from_grid = axes_from_world * estimate.grid.world_from_grid();
-    const Outline outline_grid =
-        estimate.grid.outline(rules.outline, lines_in_grid(meetings, axes_from_world, axes_from_grid));
+/// The estimate with an outline in the grid; nothing if it is too small.
+std::optional<MapPlane> plane_of(const PlaneEstimate& estimate, const Outline& outline_grid,
+                                 const DerivationRules& rules) {
     if (outline_grid.empty()) return std::nullopt;
     PlanarRegion region;
     region.plane = estimate.plane;
     region.moments = estimate.moments;
     region.rms = rms_to(estimate.plane, estimate.moments);
-    set_outline(region, world_from_axes, transformed(axes_from_grid, outline_grid));
+    const Pose& world_from_axes = estimate.box.frame_from_box;  // the principal ones
+    set_outline(region, world_from_axes,
+                transformed(world_from_axes.inverse(Eigen::Isometry) * estimate.grid.world_from_grid(),
+                            outline_grid));
     const MapPlane derived(estimate.id, region, static_cast<std::size_t>(estimate.keyframes));
     const double least = estimate.keyframes < 2 ? rules.min_single_m2 : 0;
     if (!(derived.area > 0) || static_cast<double>(derived.area) < std::max(least, rules.min_area_m2))
         return std::nullopt;
     return derived;
+}
+
+}  // namespace
+
+std::optional<MapPlane> derived_plane(const PlaneEstimate& estimate, const DerivationRules& rules) {
+    if (estimate.keyframes < rules.min_keyframes) return std::nullopt;
+    return plane_of(estimate, estimate.grid.exact_outline(rules.outline), rules);
+}
+
+std::optional<MapPlane> ended_plane(const PlaneEstimate& estimate, const DerivationRules& rules,
+                                    const std::vector<Meeting>& meetings) {
+    const Pose axes_from_world = estimate.box.frame_from_box.inverse(Eigen::Isometry);
+    const std::vector<MeetingLine> lines =
+        lines_in_grid(meetings, axes_from_world, axes_from_world * estimate.grid.world_from_grid());
+    return plane_of(estimate, estimate.grid.outline(rules.outline, lines), rules);
 }
 
 bool keeps_outline(const PlaneEstimate& estimate, const MapPlane& derived, const Plane& as_drawn) {

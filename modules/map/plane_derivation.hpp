@@ -24,10 +24,14 @@ struct Meeting {
     double reach_m = 0;  ///< see meeting_reach()
 };
 
-/// An estimate as a plane of the map, whose outline ends at the lines where others meet it; nothing if it is
-/// too small or too seldom seen.
-std::optional<MapPlane> derived_plane(const PlaneEstimate& estimate, const DerivationRules& rules,
-                                      const std::vector<Meeting>& meetings = {});
+/// An estimate as a plane of the map, with an outline as exact as its cells, to be compared with others;
+/// nothing if it is too small or too seldom seen.
+std::optional<MapPlane> derived_plane(const PlaneEstimate& estimate, const DerivationRules& rules);
+
+/// The same as others see it: with straight edges, and ending where others meet it. Nothing if too little is
+/// left of it.
+std::optional<MapPlane> ended_plane(const PlaneEstimate& estimate, const DerivationRules& rules,
+                                    const std::vector<Meeting>& meetings);
 
 /// True when an estimate is no more than numbers away from the plane that was derived from it: few cells
 /// changed, and no part moved to note against the plane `as_drawn` that its outline was traced on.

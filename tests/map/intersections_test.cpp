@@ -67,7 +67,7 @@ TEST(Intersections, NeedAdjacency) {
     far.world_from_face.translation() += Eigen::Vector3d(0.2, 0, 0);
     EXPECT_TRUE(intersection_lines(plane_of(1, kFloor), plane_of(2, far), {}).empty());
     Rectangle near = kWallX;
-    near.world_from_face.translation() += Eigen::Vector3d(0.03, 0, 0.03);
+    near.world_from_face.translation() += Eigen::Vector3d(0.08, 0, 0.08);
     EXPECT_EQ(intersection_lines(plane_of(1, kFloor), plane_of(2, near), {}).size(), 1u);
     Rectangle high = kWallX;
     high.world_from_face.translation().z() += 0.5;
@@ -75,21 +75,13 @@ TEST(Intersections, NeedAdjacency) {
     EXPECT_FALSE(intersection_point(plane_of(1, kFloor), plane_of(2, kWallY), plane_of(3, high), {}));
 }
 
-TEST(Intersections, ReachAsFarAsReadingsAreNoisy) {
-    Rectangle off = kWallX;
-    off.world_from_face.translation() += Eigen::Vector3d(0.08, 0, 0.08);
-    PlaneShape floor = plane_of(1, kFloor), wall = plane_of(2, off);
-    EXPECT_TRUE(intersection_lines(floor, wall, {}).empty()) << "8 cm off, and both are exact";
-    floor.rms = wall.rms = 0.01;
-    EXPECT_EQ(intersection_lines(floor, wall, {}).size(), 1u);
-    wall.rms = 1;
-    off.world_from_face.translation() += Eigen::Vector3d(0.1, 0, 0.1);
-    wall = plane_of(2, off);
-    wall.rms = 1;
-    EXPECT_TRUE(intersection_lines(floor, wall, {}).empty()) << "however noisy";
-    EXPECT_NEAR(meeting_reach(0.003, 0.004, 1, {}), 0.055, 1e-9);
-    EXPECT_NEAR(meeting_reach(0.003, 0.004, 0.5, {}), 0.07, 1e-9) << "a flat pair's line is less sure";
-    EXPECT_NEAR(meeting_reach(0.003, 0.004, 1e-9, {}), 0.15, 1e-9);
+TEST(Intersections, PlanesReachTheirLineAsFarAsReadingsAreNoisy) {
+    const AdjacencyRules rules;
+    EXPECT_NEAR(meeting_reach(0, 0, 1, rules), rules.slack_m, 1e-9);
+    EXPECT_NEAR(meeting_reach(0.003, 0.004, 1, rules), rules.slack_m + 0.015, 1e-9);
+    EXPECT_NEAR(meeting_reach(0.003, 0.004, 0.5, rules), rules.slack_m + 0.03, 1e-9)
+        << "a flat pair's line is less sure";
+    EXPECT_NEAR(meeting_reach(0.003, 0.004, 1e-9, rules), rules.gap_m, 1e-9) << "however noisy";
 }
 
 TEST(Intersections, ParallelAndFlatPairsHaveNone) {
