@@ -57,6 +57,10 @@ class KeptKeyframes {
     /// not above all that were let go.
     bool keep(ScanId id, std::shared_ptr<const StoredScan> scan, const Pose& world_from_camera,
               const ScanAnchor& anchor);
+    /// A keyframe's own.
+    bool keep(int keyframe_id, std::shared_ptr<const StoredScan> scan, const Pose& world_from_camera) {
+        return keep(keyframe_id, std::move(scan), world_from_camera, {keyframe_id, Pose::Identity()});
+    }
     /// Moves those that the trajectory moved by more than the options allow; see OctomapBuilder::update().
     void move(const KeyframeTrajectory& trajectory);
 

@@ -9,6 +9,7 @@
 #include <mutex>
 #include <optional>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "core/keyframe.hpp"
@@ -43,6 +44,10 @@ class OctomapWorker {
     /// False, and nothing is taken, when kMaxWaiting keyframes are not in the tree yet.
     bool add(ScanId id, std::shared_ptr<const StoredScan> scan, const Pose& world_from_camera,
              const ScanAnchor& anchor);
+    /// A keyframe's own.
+    bool add(int keyframe_id, std::shared_ptr<const StoredScan> scan, const Pose& world_from_camera) {
+        return add(keyframe_id, std::move(scan), world_from_camera, {keyframe_id, Pose::Identity()});
+    }
     void update(KeyframeTrajectory trajectory);
 
     /// The newest state, once; nothing until there is a newer one: every few seconds while something changes.

@@ -125,5 +125,20 @@ TEST(KeptKeyframes, TakeTheBytesOfTheirScans) {
     EXPECT_LT(row(1).voxel_cloud_size(0.01, 4), row(1).voxel_cloud_size(0.01, 1));
 }
 
+TEST(KeptKeyframes, LooksComeAfterTheirKeyframeAndMoveWithTheirAnchor) {
+    KeptKeyframes keyframes = row(2);
+    const Pose beside = pose(0.1, 0);
+    EXPECT_TRUE(keyframes.keep({1, 2}, scan(), beside, {0, beside}));
+    EXPECT_TRUE(keyframes.keep({1, 1}, scan(), beside, {0, beside}));
+    for (const int look : {1, 2}) {
+        ASSERT_NE(keyframes.next_waiting(), nullptr);
+        EXPECT_EQ(keyframes.next_waiting()->first, ScanId(1, look)) << "in order of time";
+        keyframes.enter({1, look}, {});
+    }
+    keyframes.move(trajectory({pose(1, 0), pose(0.2, 0)}));
+    EXPECT_EQ(keyframes.misplaced(), 3u) << "keyframe 0 and its looks";
+    EXPECT_TRUE(keyframes.all().at({1, 1}).world_from_camera.isApprox(pose(1, 0) * beside, 1e-12));
+}
+
 }  // namespace
 }  // namespace planemap::octomap
