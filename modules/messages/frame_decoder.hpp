@@ -40,7 +40,7 @@ class Frame {
     /// Of the images as they came: what keeping the frame takes, apart from what was decoded.
     std::size_t image_bytes() const;
 
-    const DepthImage& depth() const;           ///< depth camera's pixels, raw units, corrected if the camera says how
+    const DepthImage& depth() const;  ///< depth camera's pixels, raw units, corrected if the camera says how
     const DepthImage& depth_in_color() const;  ///< registered to the colour camera's pixels, raw units
     const GrayImage* gray() const;             ///< luma; nullptr without colour
     /// A small picture of the colours, one pixel for `reduction` x `reduction` (1, 2, 4 or 8); not kept.
