@@ -8,8 +8,8 @@
 
 namespace planemap::sensor {
 
-/// A source whose readings are corrected by its camera's depth_correction. Its camera() has none left to do, so
-/// that nobody after it corrects them again.
+/// A source whose readings are corrected by its camera's depth_correction. Its camera() has none left to do,
+/// so that nobody after it corrects them again.
 class CorrectedSource : public FrameSource {
   public:
     /// `sensed` is the source's camera, with a correction.

@@ -2,6 +2,7 @@
 #include "export/export.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
@@ -114,7 +115,7 @@ Exported export_map(const ExportOptions& options, const Json& about) {
     require_ours(options, names);
     ResultFolder folder(options.output, names);
 
-    MapSource source{map, nullptr, [] { return std::nullopt; }};
+    MapSource source{std::make_shared<const PlaneMap>(map), nullptr, [] { return std::nullopt; }};
     if (!file.empty()) source.trajectory = [&trajectory] { return trajectory; };
     const Json report = report_of(options, map, file.empty() ? nullptr : &trajectory, warnings, about);
     std::vector<Result> results = essential_results(source);

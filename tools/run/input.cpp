@@ -46,7 +46,8 @@ class SensorInput : public Input {
     }
 
     std::optional<Trajectory> truth() const override {
-        if (const auto* simulated = dynamic_cast<const simulator::SimulatedSource*>(&shell_.source().origin()))
+        if (const auto* simulated =
+                dynamic_cast<const simulator::SimulatedSource*>(&shell_.source().origin()))
             return simulated->ground_truth();
         return truth_;
     }

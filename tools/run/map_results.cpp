@@ -18,31 +18,31 @@ Result text_result(const char* name, std::function<std::string()> bytes) {
 }  // namespace
 
 std::vector<Result> essential_results(const MapSource& source) {
-    const PlaneMap& map = source.map;
+    const std::shared_ptr<const PlaneMap> map = source.map;
     std::vector<Result> results{
-        {"plane_map.lcmlog", [&map](const auto& file) { map::write_plane_map(file, map); }}};
+        {"plane_map.lcmlog", [map](const auto& file) { map::write_plane_map(file, *map); }}};
     if (source.trajectory) {
         results.push_back({"trajectory.txt", [trajectory = source.trajectory](const auto& file) {
                                write_trajectory(file, trajectory());
                            }});
     }
-    results.push_back(text_result("planes.json", [&map, sightings = source.sightings] {
-        return exports::planes_json(map, sightings());
+    results.push_back(text_result("planes.json", [map, sightings = source.sightings] {
+        return exports::planes_json(*map, sightings());
     }));
     return results;
 }
 
 std::vector<Result> drawn_results(const MapSource& source) {
-    const PlaneMap& map = source.map;
+    const std::shared_ptr<const PlaneMap> map = source.map;
     const auto of_trajectory = [&](const char* name, auto function) {
-        return text_result(name, [&map, trajectory = source.trajectory, function] {
-            return function(map, trajectory ? trajectory() : Trajectory());
+        return text_result(name, [map, trajectory = source.trajectory, function] {
+            return function(*map, trajectory ? trajectory() : Trajectory());
         });
     };
     return {
         of_trajectory("planes.ply", exports::planes_ply),
         of_trajectory("planes.obj", [](const auto& m, const auto& t) { return exports::planes_obj(m, t); }),
-        text_result("planes.mtl", [&map] { return exports::planes_mtl(map); }),
+        text_result("planes.mtl", [map] { return exports::planes_mtl(*map); }),
         of_trajectory("planes.glb", exports::planes_glb),
         of_trajectory("floor_plan.geojson", exports::floor_plan_geojson),
         of_trajectory("overhead.svg", exports::overhead_svg),

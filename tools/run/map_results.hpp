@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -15,9 +16,9 @@
 
 namespace planemap {
 
-/// A map and what is known beside it. It must outlive the results made of it.
+/// A map and what is known beside it.
 struct MapSource {
-    const PlaneMap& map;
+    std::shared_ptr<const PlaneMap> map;
     std::function<Trajectory()> trajectory;  ///< asked when a file needs it; empty: not known
     std::function<std::optional<exports::Sightings>()> sightings;
 };

@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "core/files.hpp"
 #include "evaluate/soundness_report.hpp"
 #include "map/map_file.hpp"
+#include "messages/convert.hpp"
 #include "pipeline/pipeline.hpp"
 #include "run/accuracy.hpp"
 #include "run/depth_watch.hpp"
@@ -77,7 +79,10 @@ namespace {
 
 MapSource map_source(pipeline::Pipeline& pipeline) {
     const map::PlaneMapper& mapper = pipeline.map().mapper();
-    return {mapper.map(), [&pipeline] { return pipeline.trajectory(); },
+    // As the stored map says it: what is exported from that later is the same to the last digit.
+    auto stored =
+        std::make_shared<const PlaneMap>(messages::from_message(messages::to_message(mapper.map(), 0)));
+    return {std::move(stored), [&pipeline] { return pipeline.trajectory(); },
             [&mapper] { return mapper.sightings(); }};
 }
 
