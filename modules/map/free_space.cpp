@@ -13,7 +13,8 @@ namespace {
 constexpr int kMostAsked = 24;
 /// Cells beside those that a view sees of a plane, which it does not see past: poses err sideways, too.
 constexpr int kBeside = 6;
-/// Viewpoints after which blocks that are done are left out.
+/// Viewpoints after which blocks that are done are left out: at first, and then each time when there were
+/// half as many more.
 constexpr std::size_t kTidyAfter = 8;
 
 /// False for what is behind the camera, beyond its reach, or beside its pyramid.
@@ -82,7 +83,7 @@ void FreeSpace::look_back(PlaneEstimate& plane, const std::vector<SeenCells>& se
     for (const SeenCells& cells : seen) drawn.emplace(cells.view, &cells.cells);
     std::vector<const Bitmap*> own;
     auto next = seen.begin();
-    std::size_t looked = 0;
+    std::size_t looked = 0, tidy_at = kTidyAfter;
     for (const Viewpoint& viewpoint : viewpoints) {
         if (blocks.empty()) break;
         const std::optional<Footprint> footprint = footprint_of(plane, viewpoint);
@@ -95,7 +96,8 @@ void FreeSpace::look_back(PlaneEstimate& plane, const std::vector<SeenCells>& se
         for_each_past(plane, viewpoint, *footprint, own, blocks, [&](const EvidenceGrid::Block& block) {
             plane.grid.miss_before(block, viewpoint.keyframe->looks);
         });
-        if (++looked % kTidyAfter != 0) continue;
+        if (++looked < tidy_at) continue;
+        tidy_at += std::max(kTidyAfter, looked / 2);
         std::erase_if(blocks, [&](const EvidenceGrid::Block& block) {
             return block.asked >= kMostAsked || !plane.grid.is_undecided(block);
         });
@@ -163,7 +165,9 @@ void FreeSpace::for_each_past(const PlaneEstimate& plane, const Viewpoint& viewp
                          [](const EvidenceGrid::Block& block, double low) { return block.middle.y() < low; });
     for (auto at = first; at != blocks.end(); ++at) {
         EvidenceGrid::Block& block = *at;
-        if (block.middle.x() < footprint.low.x() || block.middle.x() > footprint.high.x()) continue;
+        if (block.asked >= kMostAsked || block.middle.x() < footprint.low.x() ||
+            block.middle.x() > footprint.high.x())
+            continue;
         if (block.middle.y() > footprint.high.y()) break;  // they come row after row
         const Eigen::Vector3d p = origin + block.middle.x() * x + block.middle.y() * y;
         const std::optional<double> depth = seen.depth_behind(p);

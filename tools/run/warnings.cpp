@@ -31,14 +31,15 @@ double median_step_s(const std::vector<OdometryEstimate>& estimates) {
     return 1e-6 * static_cast<double>(*middle);
 }
 
-/// Where depth is off by more than it scatters, the map is as bent; empty if it is not.
+/// Where depth is off by more than it scatters, and than that is uncertain, the map is as bent; empty if not.
 std::string bent_depth(const Json& report) {
     const Json depth = report.value("depth_off", Json());
-    if (!depth.is_object() || !(depth.at("off_m").get<double>() > depth.at("noise_m").get<double>()))
-        return "";
-    return format("surfaces fit together best if depth readings of %g m", depth.at("range_m").get<double>()) +
-           format(" are off by %.1f cm", 100 * depth.at("off_m").get<double>()) +
-           format(" (over the image; certain to %.1f cm)", 100 * depth.at("sigma_m").get<double>()) +
+    if (!depth.is_object()) return "";
+    const auto metres = [&](const char* key) { return depth.at(key).get<double>(); };
+    if (!(metres("off_m") > metres("noise_m") && metres("off_m") > metres("sigma_m"))) return "";
+    return format("surfaces fit together best if depth readings of %g m", metres("range_m")) +
+           format(" are off by %.1f cm", 100 * metres("off_m")) +
+           format(" (over the image; certain to %.1f cm)", 100 * metres("sigma_m")) +
            ": planemap-calibrate learns how, and --camera with its file corrects it";
 }
 
