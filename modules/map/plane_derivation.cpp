@@ -29,6 +29,10 @@ Outline transformed(const Pose& b_from_a, Outline outline) {
     return outline;
 }
 
+/// A wall and all that stands at it meet at some twenty lines. What could be a map and has hundreds of planes
+/// that all cross would take hours: of such a plane the longest lines count.
+constexpr std::size_t kMostLines = 64;
+
 /// The meetings in the x and y of the grid from which transformed() leads to the axes.
 std::vector<MeetingLine> lines_in_grid(const std::vector<Meeting>& meetings, const Pose& axes_from_world,
                                        const Pose& axes_from_grid) {
@@ -41,6 +45,11 @@ std::vector<MeetingLine> lines_in_grid(const std::vector<Meeting>& meetings, con
     lines.reserve(meetings.size());
     for (const Meeting& meeting : meetings)
         lines.push_back({in_grid(meeting.line.from), in_grid(meeting.line.to), meeting.reach_m});
+    if (lines.size() <= kMostLines) return lines;
+    std::stable_sort(lines.begin(), lines.end(), [](const MeetingLine& a, const MeetingLine& b) {
+        return (a.to - a.from).squaredNorm() > (b.to - b.from).squaredNorm();
+    });
+    lines.resize(kMostLines);
     return lines;
 }
 
