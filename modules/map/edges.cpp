@@ -238,7 +238,7 @@ std::optional<Eigen::Vector2d> corner_near(const std::optional<Line2>& before,
                                            const std::optional<Line2>& after, const Eigen::Vector2d& from,
                                            const Eigen::Vector2d& to, double reach) {
     if (!before || !after) return std::nullopt;
-    const auto corner = crossing_of(*before, *after);
+    auto corner = crossing_of(*before, *after);
     if (!corner || (*corner - from).norm() > reach || (*corner - to).norm() > reach) return std::nullopt;
     return corner;
 }

@@ -43,8 +43,8 @@ void FreeSpace::carve(std::vector<PlaneEstimate>& planes, const Viewpoint& viewp
         const std::optional<Footprint> footprint = footprint_of(plane, viewpoint);
         if (!footprint) continue;
         const std::vector<Bitmap> drawn = own_cells(plane, *viewpoint.keyframe);
-        std::vector<const Bitmap*> own;
-        for (const Bitmap& cells : drawn) own.push_back(&cells);
+        std::vector<const Bitmap*> own(drawn.size());
+        std::transform(drawn.begin(), drawn.end(), own.begin(), [](const Bitmap& cells) { return &cells; });
         blocks.clear();
         plane.grid.seen_blocks(footprint->low, footprint->high, blocks);
         int lost = 0;
