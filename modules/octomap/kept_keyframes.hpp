@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <compare>
 #include <cstddef>
 #include <map>
 #include <memory>
@@ -23,7 +22,13 @@ struct ScanId {
 
     ScanId(int keyframe_id) : keyframe(keyframe_id) {}  // NOLINT(google-explicit-constructor): it is one
     ScanId(int keyframe_id, int look_number) : keyframe(keyframe_id), look(look_number) {}
-    auto operator<=>(const ScanId&) const = default;
+    friend bool operator==(const ScanId&, const ScanId&) = default;
+    friend bool operator<(const ScanId& a, const ScanId& b) {
+        return std::pair(a.keyframe, a.look) < std::pair(b.keyframe, b.look);
+    }
+    friend bool operator>(const ScanId& a, const ScanId& b) { return b < a; }
+    friend bool operator<=(const ScanId& a, const ScanId& b) { return !(b < a); }
+    friend bool operator>=(const ScanId& a, const ScanId& b) { return !(a < b); }
 };
 
 /// Where a depth image was taken: about a keyframe, with which it moves.

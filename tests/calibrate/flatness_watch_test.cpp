@@ -51,7 +51,8 @@ Flatness::Field bent_part(const Flatness::Field& field) {
     Eigen::Matrix<double, DepthCorrection::kNodes, 3> linear;
     for (int i = 0; i < linear.rows(); ++i) {
         constexpr int kColumns = static_cast<int>(DepthCorrection::kColumns);
-        linear.row(i) << 1, i % kColumns, i / kColumns;
+        const int row = i / kColumns, column = i % kColumns;
+        linear.row(i) << 1, column, row;
     }
     return field - linear * linear.colPivHouseholderQr().solve(field);
 }

@@ -25,8 +25,8 @@ CameraInfo sensor() {
 DepthCorrection bend(double size) {
     DepthCorrection field;
     for (std::size_t i = 0; i < DepthCorrection::kNodes; ++i) {
-        const double x = static_cast<double>(i % DepthCorrection::kColumns) / 2 - 1;
-        const double y = static_cast<double>(i / DepthCorrection::kColumns) / 1.5 - 1;
+        const std::size_t row = i / DepthCorrection::kColumns, column = i % DepthCorrection::kColumns;
+        const double x = static_cast<double>(column) / 2 - 1, y = static_cast<double>(row) / 1.5 - 1;
         field.offsets[i] = size * (0.5 - x + x * x * y);
     }
     return field;
