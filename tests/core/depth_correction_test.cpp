@@ -17,9 +17,10 @@ CameraInfo camera_of(int width, int height) {
 
 DepthCorrection ramp() {
     DepthCorrection correction;
-    for (std::size_t i = 0; i < DepthCorrection::kNodes; ++i)
-        correction.offsets[i] = 0.001 * static_cast<double>(i % DepthCorrection::kColumns) -
-                                0.002 * static_cast<double>(i / DepthCorrection::kColumns);
+    for (std::size_t i = 0; i < DepthCorrection::kNodes; ++i) {
+        const std::size_t row = i / DepthCorrection::kColumns, column = i % DepthCorrection::kColumns;
+        correction.offsets[i] = 0.001 * static_cast<double>(column) - 0.002 * static_cast<double>(row);
+    }
     return correction;
 }
 
