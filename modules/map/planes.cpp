@@ -37,6 +37,7 @@ std::vector<Viewpoint> views_before(const StoredKeyframe& view, KeyframeStore& s
                      [](const auto* a, const auto* b) { return a->seen_utime > b->seen_utime; });
     if (views.size() > kMost) views.resize(kMost);
     std::vector<Viewpoint> viewpoints;
+    viewpoints.reserve(views.size());
     for (const StoredKeyframe* other : views) viewpoints.emplace_back(*other);
     return viewpoints;
 }
