@@ -138,7 +138,7 @@ TEST(StraightEdges, AFloorBetweenFourWallsHasItsCornersWhereTheyMeet) {
         const Outline outline = outline_at(shape_of([&](const Eigen::Vector2d& p) {
                                                const double a = x.dot(p), b = y.dot(p);
                                                const auto end = [&](double place) {
-                                                   return ends[static_cast<std::size_t>((place + 2) * 20)];
+                                                   return ends[static_cast<std::size_t>((place + 3) * 20)];
                                                };
                                                return std::abs(a) < 1 + end(b) && std::abs(b) < 0.7 + end(a);
                                            }),
