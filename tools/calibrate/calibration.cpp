@@ -48,6 +48,17 @@ graph::BentDepth learn(const CalibrationOptions& options, Calibration& calibrati
                                                 watch.flatness());
 }
 
+/// Of the recording, or what it is told. Throws std::runtime_error for a live camera: it cannot be read
+/// again.
+CameraInfo camera_of(const CalibrationOptions& options) {
+    const auto source = sensor::open_source(options.input, options.source);
+    if (source->is_live())
+        throw std::runtime_error(options.input +
+                                 ": a live camera cannot be read several times: record it (planemap-sensor "
+                                 "with --record), and calibrate the recording");
+    return options.source.camera.value_or(source->camera());
+}
+
 /// What no sensor is off by comes of wrong intrinsics, or of a recording that says too little.
 void refuse_beyond_sensors(const std::string& input, const DepthCorrection& correction) {
     const auto [least, most] = std::minmax_element(correction.offsets.begin(), correction.offsets.end());
@@ -70,8 +81,7 @@ void CalibrationOptions::validate() const {
 Calibration calibrate(const CalibrationOptions& options) {
     options.validate();
     Calibration calibration;
-    calibration.camera = options.source.camera ? *options.source.camera
-                                               : sensor::open_source(options.input, options.source)->camera();
+    calibration.camera = camera_of(options);
     calibration.camera.depth_correction.emplace();
     for (int i = 0; i < options.passes; ++i) {
         const graph::BentDepth found = learn(options, calibration);

@@ -67,7 +67,9 @@ int main(int argc, char** argv) {
     CalibrateOptions options;
     CalibrationOptions& calibration = options.calibration;
     messages::Flags flags(kProgram, kDescription);
-    flags.add_positional("input", calibration.input, std::string("LCM log, ") + sensor::kInputs);
+    flags.add_positional("input", calibration.input,
+                         "A recording: an LCM log, FILE.oni, a TUM-layout folder (rgb.txt, depth.txt, "
+                         "camera.json), or sim:WORLD[?KEY=VALUE&...]");
     flags.add("o,output", options.output, "camera.json to write; - is standard output");
     flags.required();
     options.camera.add_to(flags, "camera.json to start from, instead of what INPUT says of its camera");
