@@ -44,6 +44,9 @@ struct CameraLimits {
                                                    ///< would agree with another
 };
 
+/// Share of the range by which depth is taken to be bent, where nobody says how.
+inline constexpr double kRangeBias = 0.01;
+
 /// Noise of the depth sensor: standard deviation of depth at z metres, base + quadratic (z - offset)^2,
 /// metres. The default is the Kinect's (Nguyen et al. 2012).
 struct DepthNoise {

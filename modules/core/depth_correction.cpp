@@ -2,6 +2,7 @@
 #include "core/depth_correction.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -22,11 +23,18 @@ struct Between {
     }
 };
 
-/// Offsets in 1 / raw units, a row of the image.
-void fill_row(const DepthCorrection& correction, const PinholeCamera& depth, double units, int v,
-              std::vector<float>& row) {
-    for (int u = 0; u < depth.width; ++u)
-        row[static_cast<std::size_t>(u)] = static_cast<float>(offset_at(correction, depth, u, v) / units);
+/// The field along a row of the image, 1 / raw units, at the nodes' columns.
+std::array<float, DepthCorrection::kColumns> along_row(const DepthCorrection& correction, double units, int v,
+                                                       int height) {
+    constexpr std::size_t kColumns = DepthCorrection::kColumns;
+    const Between rows(v, height, DepthCorrection::kRows);
+    std::array<float, kColumns> field;
+    for (std::size_t column = 0; column < kColumns; ++column) {
+        const double* const node = &correction.offsets[rows.first * kColumns + column];
+        field[column] =
+            static_cast<float>(((1 - rows.share) * node[0] + rows.share * node[kColumns]) / units);
+    }
+    return field;
 }
 
 std::uint16_t corrected(std::uint16_t raw, float offset) {
@@ -62,11 +70,17 @@ DepthCorrection composed(const DepthCorrection& first, const DepthCorrection& se
 
 void correct_depth(DepthImage& depth, const CameraInfo& camera) {
     if (!camera.depth_correction) return;
-    std::vector<float> offsets(static_cast<std::size_t>(depth.width));
+    std::vector<Between> columns;
+    columns.reserve(static_cast<std::size_t>(depth.width));
+    for (int u = 0; u < depth.width; ++u) columns.emplace_back(u, depth.width, DepthCorrection::kColumns);
     for (int v = 0; v < depth.height; ++v) {
-        fill_row(*camera.depth_correction, camera.depth, camera.depth_units_per_metre, v, offsets);
-        for (int u = 0; u < depth.width; ++u)
-            depth(u, v) = corrected(depth(u, v), offsets[static_cast<std::size_t>(u)]);
+        const auto field = along_row(*camera.depth_correction, camera.depth_units_per_metre, v, depth.height);
+        std::uint16_t* row = depth.row(v);
+        for (const Between& column : columns) {
+            const float left = field[column.first], right = field[column.first + 1];
+            *row = corrected(*row, left + static_cast<float>(column.share) * (right - left));
+            ++row;
+        }
     }
 }
 

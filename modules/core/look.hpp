@@ -30,4 +30,7 @@ struct Look {
 /// Of one look to the next: 0.1 s, less what a camera's clock trembles.
 inline constexpr std::int64_t kLeastLookApart_us = 90000;
 
+/// More looks of one state say nothing more: so many tell what is there, whatever was before.
+inline constexpr int kLooksThatCount = 5;
+
 }  // namespace planemap

@@ -75,10 +75,10 @@ class Sight {
 
 /// When a camera sees past a point: what it sees there lies farther by more than poses and depth err.
 struct PastRules {
-    double margin_m = 0.05;    ///< of poses, across the surface
-    double sigmas = 2;         ///< of the sensor's noise
-    double range_bias = 0.01;  ///< by which a sensor bends depth, share of it
-    double grazing = 0.12;     ///< sine to a surface: flatter rays say nothing of it
+    double margin_m = 0.05;  ///< of poses, across the surface
+    double sigmas = 2;       ///< of the sensor's noise
+    double range_bias = kRangeBias;
+    double grazing = 0.12;  ///< sine to a surface: flatter rays say nothing of it
 
     /// Whether what is seen at a depth lies behind a point of a surface; nothing where the ray is too flat.
     std::optional<bool> is_past(const Eigen::Vector3d& p_camera, const Eigen::Vector3d& normal_camera,

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/geometry/crossing.hpp"
+#include "core/geometry/segment.hpp"
 
 namespace planemap::map {
 
@@ -19,10 +20,6 @@ constexpr double kOnLine = 1.5;
 constexpr double kCornerReach = 3;
 /// Edges at a smaller angle (sine) have no corner that their lines could tell.
 constexpr double kLeastTurn = 0.35;
-
-double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-    return a.x() * b.y() - a.y() * b.x();
-}
 
 /// A line in the plane; `along` is a unit vector.
 struct Line2 {

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "core/look.hpp"
+
 namespace planemap::map {
 
 /// What is known of 64 neighbouring cells of a plane. Of each: how well it was seen (support, 0 to
@@ -14,7 +16,7 @@ namespace planemap::map {
 class EvidenceCells {
   public:
     static constexpr int kMaxSupport = 15;
-    static constexpr int kMaxOdds = 5, kLeastOdds = -4;
+    static constexpr int kMaxOdds = kLooksThatCount, kLeastOdds = 1 - kMaxOdds;
 
     /// Adds 2^strength (strength 0 to 3) to the support of the cells that are set.
     void add_support(std::uint64_t cells, int strength) {

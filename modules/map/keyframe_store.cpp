@@ -221,10 +221,13 @@ std::vector<StoredKeyframe*> KeyframeStore::nearest(const Pose& world_from_camer
         const Pose apart = world_from_camera.inverse(Eigen::Isometry) * *keyframe.world_from_camera;
         near.emplace_back(apart.translation().norm() + rotation_angle(apart), &keyframe);
     }
-    std::stable_sort(near.begin(), near.end(), [](auto& a, auto& b) { return a.first < b.first; });
-    std::vector<StoredKeyframe*> result;
-    for (const auto& [distance, keyframe] : near)
-        if (result.size() < count) result.push_back(keyframe);
+    count = std::min(count, near.size());
+    const auto last = near.begin() + static_cast<std::ptrdiff_t>(count);
+    std::partial_sort(near.begin(), last, near.end(), [](auto& a, auto& b) {
+        return std::pair(a.first, a.second->id) < std::pair(b.first, b.second->id);
+    });
+    std::vector<StoredKeyframe*> result(count);
+    std::transform(near.begin(), last, result.begin(), [](auto& a) { return a.second; });
     return result;
 }
 

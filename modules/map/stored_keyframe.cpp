@@ -152,7 +152,7 @@ void take_region(StoredKeyframe& keyframe, const StoredRegion& other, const Stor
 }
 
 void StoredKeyframe::see_again(int looks_now, std::int64_t utime_now) {
-    looks = std::clamp(looks_now, looks, kMostLooks);
+    looks = std::clamp(looks_now, looks, kLooksThatCount);
     seen_utime = std::max(seen_utime, utime_now);
     for (StoredRegion& region : regions) {
         if (region.number < 0) continue;  // another one saw it

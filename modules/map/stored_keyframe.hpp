@@ -41,8 +41,7 @@ struct StoredRegion {
 
 /// What one depth frame saw: a keyframe, or a look from near it.
 struct StoredKeyframe {
-    static constexpr int kMostLooks = EvidenceCells::kMaxOdds;  ///< more would say nothing more
-    static constexpr std::size_t kMostLater = 12;               ///< as many tell all odds of a cell
+    static constexpr std::size_t kMostLater = 12;  ///< as many tell all odds of a cell
 
     std::int64_t utime = 0;
     std::int64_t seen_utime = 0;            ///< of the last look that saw the same

@@ -27,7 +27,7 @@ struct SeenRegion {
 struct SurfaceRules {
     double angle_rad = 0.2094;   ///< between them: 12 deg
     double pose_sigma_m = 0.02;  ///< of keyframes
-    double range_bias = 0.01;    ///< by which a sensor bends depth, share of it
+    double range_bias = kRangeBias;
     double sigmas = 3;           ///< of the errors of both planes, by which they may be apart
     double most_apart_m = 0.15;  ///< whatever the errors
     double least_overlap = 0.2;  ///< of the smaller one's shape, that the other says again

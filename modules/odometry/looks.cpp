@@ -74,8 +74,8 @@ std::optional<Look> Looks::see(const OdometryEstimate& estimate, std::span<const
         ++place.number;
         place.looks = 1;
         look.regions = std::move(regions);
-    } else if (place.looks < kMostLooks || last_keyframe_id_ != place.keyframe_id) {
-        place.looks = std::min(place.looks + 1, kMostLooks);
+    } else if (place.looks < kLooksThatCount || last_keyframe_id_ != place.keyframe_id) {
+        place.looks = std::min(place.looks + 1, kLooksThatCount);
     } else {
         return std::nullopt;
     }

@@ -20,7 +20,6 @@ namespace planemap::odometry {
 /// row, then one each kChangeEach_s.
 class Looks {
   public:
-    static constexpr int kMostLooks = 5;  ///< more of one state say nothing more
     static constexpr double kMostChanges = 30;
     static constexpr double kChangeEach_s = 2;
 

@@ -48,7 +48,7 @@ struct Camera {
 
 TEST(Looks, OfAStillPlaceAreSaidUntilTheyCountNoMore) {
     Camera camera({kWall, plate_at(0)});
-    for (int i = 2; i <= Looks::kMostLooks; ++i) {
+    for (int i = 2; i <= kLooksThatCount; ++i) {
         const std::optional<Look> look = camera.see({kWall, plate_at(0)});
         ASSERT_TRUE(look);
         EXPECT_EQ(look->keyframe_id, 3);
@@ -65,7 +65,7 @@ TEST(Looks, SayWhatComesAndWhatGoes) {
         const std::vector<Rectangle> with{kWall, plate_at(0)}, without{kWall};
         Camera camera(goes ? with : without);
         for (int i = 0; i < 10; ++i) camera.see(goes ? with : without);
-        for (int i = 1; i <= Looks::kMostLooks; ++i) {
+        for (int i = 1; i <= kLooksThatCount; ++i) {
             const std::optional<Look> look = camera.see(goes ? without : with);
             ASSERT_TRUE(look);
             EXPECT_EQ(look->number, 1);

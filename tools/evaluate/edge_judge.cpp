@@ -8,6 +8,7 @@
 #include "core/angle.hpp"
 #include "core/geometry/plane_intersection.hpp"
 #include "core/geometry/segment.hpp"
+#include "evaluate/statistics.hpp"
 
 namespace planemap::evaluation {
 
@@ -143,10 +144,6 @@ std::size_t count_near(const std::vector<Eigen::Vector3d>& points, const std::ve
         return std::any_of(others.begin(), others.end(),
                            [&](const auto& other) { return (other - p).norm() <= near_m; });
     }));
-}
-
-std::optional<double> share(double part, double whole) {
-    return whole > 0 ? std::optional(part / whole) : std::nullopt;
 }
 
 /// Distance from a place on the plane to the nearest edge of the outline square to the line; nothing if that

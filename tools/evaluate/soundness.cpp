@@ -8,6 +8,7 @@
 #include "core/angle.hpp"
 #include "evaluate/edge_judge.hpp"
 #include "evaluate/plane_raster.hpp"
+#include "evaluate/statistics.hpp"
 
 namespace planemap::evaluation {
 
@@ -248,10 +249,6 @@ double doubled_area(const std::vector<Face>& faces, const std::vector<Pair>& pai
         }
     }
     return static_cast<double>(count) * kCellArea;
-}
-
-std::optional<double> share(double part, double whole) {
-    return whole > 0 ? std::optional(part / whole) : std::nullopt;
 }
 
 }  // namespace

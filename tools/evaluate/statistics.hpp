@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 namespace planemap {
@@ -17,5 +18,10 @@ Statistics statistics(std::vector<double> values);
 /// The value that the share `rank` (0 to 1) of the values does not exceed, by the nearest rank: 0.5 is a
 /// median that is one of them. NaN for none.
 double nearest_rank(std::vector<double> values, double rank);
+
+/// A part of a whole; nothing where there is nothing to have a share of.
+inline std::optional<double> share(double part, double whole) {
+    return whole > 0 ? std::optional(part / whole) : std::nullopt;
+}
 
 }  // namespace planemap

@@ -16,10 +16,6 @@ namespace planemap {
 
 namespace {
 
-double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-    return a.x() * b.y() - a.y() * b.x();
-}
-
 /// Even-odd rule for one ring.
 bool contains(const Ring& ring, const Eigen::Vector2d& p) {
     bool inside = false;

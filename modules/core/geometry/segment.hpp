@@ -6,6 +6,11 @@
 
 namespace planemap {
 
+/// Twice the area of the triangle from the origin to a and b: positive if b lies to the left of a.
+inline double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+    return a.x() * b.y() - a.y() * b.x();
+}
+
 /// The point of the segment from a to b that is nearest to p.
 inline Eigen::Vector2d nearest_on_segment(const Eigen::Vector2d& p, const Eigen::Vector2d& a,
                                           const Eigen::Vector2d& b) {
