@@ -58,9 +58,10 @@ TEST_F(ViewerShellTest, ShowsAFrameSmallAndNotEveryOne) {
     const bot_core::images_t full = frame(1000000);
     double difference = 0;
     for (int v = 0; v < 120; ++v)
-        for (int u = 0; u < 160; ++u)
-            difference += std::abs(small(u, v) -
-                                   full.images[0].data[static_cast<std::size_t>(3 * (2 * v * 320 + 2 * u))]);
+        for (int u = 0; u < 160; ++u) {
+            const std::size_t pixel = 640 * static_cast<std::size_t>(v) + 2 * static_cast<std::size_t>(u);
+            difference += std::abs(small(u, v) - full.images[0].data[3 * pixel]);
+        }
     EXPECT_LT(difference / (160 * 120), 10);
     EXPECT_EQ(shell.status().decode_error_count(), 5 * kCorrupt)
         << "regions that no preview waits for are not decoded";
