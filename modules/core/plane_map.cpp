@@ -130,9 +130,18 @@ const MapPlane* PlaneMap::find(int id) const {
     return at != planes.end() && at->id == id ? &*at : nullptr;
 }
 
+const MapOutline* PlaneMap::inferred_of(int id) const {
+    const auto at =
+        std::lower_bound(inferred.begin(), inferred.end(), id,
+                         [](const InferredRings& rings, int wanted) { return rings.plane < wanted; });
+    return at != inferred.end() && at->plane == id ? &at->outline : nullptr;
+}
+
 std::size_t memory_bytes(const PlaneMap& map) {
-    std::size_t bytes = sizeof map + heap_bytes(map.planes) + heap_bytes(map.lines) + heap_bytes(map.points);
+    std::size_t bytes = sizeof map + heap_bytes(map.planes) + heap_bytes(map.lines) + heap_bytes(map.points) +
+                        heap_bytes(map.inferred);
     for (const MapPlane& plane : map.planes) bytes += heap_bytes(plane.outline.packed);
+    for (const InferredRings& rings : map.inferred) bytes += heap_bytes(rings.outline.packed);
     return bytes;
 }
 

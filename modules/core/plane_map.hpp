@@ -91,6 +91,13 @@ struct IntersectionPoint {
     Eigen::Vector3f position = Eigen::Vector3f::Zero();
 };
 
+/// Parts of a floor, a ceiling or a wall that nobody saw: what stands before them hides them, and the plane
+/// goes on beside it. They count in no area.
+struct InferredRings {
+    int plane = -1;      ///< id
+    MapOutline outline;  ///< in the plane's x and y
+};
+
 /// The map: planes, and where they meet.
 struct PlaneMap {
     std::int64_t utime = 0;                        ///< of the newest keyframe in it, microseconds
@@ -99,9 +106,12 @@ struct PlaneMap {
     std::vector<MapPlane> planes;                  ///< ascending id
     std::vector<IntersectionLine> lines;
     std::vector<IntersectionPoint> points;
+    std::vector<InferredRings> inferred;  ///< of the planes that have some, ascending id
 
     /// The plane with the id, or nullptr.
     const MapPlane* find(int id) const;
+    /// What is inferred of the plane with the id, or nullptr.
+    const MapOutline* inferred_of(int id) const;
 };
 
 /// Bytes that the map takes in memory, by capacity.

@@ -12,6 +12,7 @@ namespace planemap::exports {
 namespace {
 
 constexpr double kNumberedArea_m2 = 0.15;  ///< smaller planes are drawn without their number
+constexpr double kLevel = 0.35;            ///< of the normal along up: more is a surface, less is upright
 
 /// What a plane is filled with, or an upright one drawn with: a colour a label.
 Rgb label_color(PlaneLabel label) {
@@ -66,6 +67,27 @@ class Numbers {
     std::vector<std::pair<Eigen::Vector2d, double>> placed_;
 };
 
+std::string drawn_footprint(const MapPlane& plane, const Eigen::Matrix3d& level, const Fit& fit) {
+    std::string d;
+    for (const auto& [from, to] : footprint(plane, level)) d += move_to(fit(from)) + line_to(fit(to));
+    return d;
+}
+
+/// Dashed: the inferred part of a plane, which is the outline of this one.
+std::string inferred_part(const MapPlane& plane, const Eigen::Matrix3d& level, const Fit& fit) {
+    const double upward = level.row(2).dot(plane.normal.cast<double>());
+    const std::string color = css(label_color(plane.label), upward > kLevel ? 0.6 : 1);
+    if (upward < -kLevel) return {};
+    if (upward <= kLevel) {
+        return "<path d=\"" + drawn_footprint(plane, level, fit) + "\" fill=\"none\" stroke=\"" + color +
+               "\" stroke-width=\"2\" stroke-dasharray=\"5 4\"/>\n";
+    }
+    const auto project = [&](const Eigen::Vector3d& p) { return fit((level * p).head<2>()); };
+    return "<path d=\"" + path(world_rings(plane), project) + "\" fill-rule=\"evenodd\" fill=\"" +
+           css(label_color(plane.label)) + "\" fill-opacity=\"0.3\" stroke=\"" + color +
+           "\" stroke-width=\"0.8\" stroke-dasharray=\"5 4\"/>\n";
+}
+
 /// What became of the planes of a map in the overhead drawing.
 struct Shown {
     const MapPlane* plane;
@@ -73,7 +95,7 @@ struct Shown {
 };
 
 /// Every plane of the map by its label, with the label's colour; beside the drawing.
-std::string legend(const std::vector<Shown>& planes, std::size_t all) {
+std::string legend(const std::vector<Shown>& planes, std::size_t all, bool has_inferred) {
     const double x = kPageWidth_px - kLegendWidth_px + 24;
     double y = kTitleHeight_px + 30;
     std::string svg;
@@ -104,6 +126,11 @@ std::string legend(const std::vector<Shown>& planes, std::size_t all) {
     line("<path d=\"" + move_to({x, y}) + "h18\" stroke=\"" + css(kTrajectoryColor) +
              "\" stroke-width=\"2\"/>",
          "trajectory, from the green dot");
+    if (has_inferred) {
+        line("<path d=\"" + move_to({x, y}) +
+                 "h18\" stroke=\"#555\" stroke-width=\"1.5\" stroke-dasharray=\"5 4\"/>",
+             "inferred, behind things");
+    }
     const char* small = "font-size=\"11\" fill=\"#555\"";
     if (hidden_count > 0) line("", count_of(hidden_count, "plane") + " not drawn: seen from below", small);
     if (small_count > 0)
@@ -123,10 +150,10 @@ std::string overhead_svg(const PlaneMap& map, const Trajectory& trajectory) {
     std::vector<Eigen::Vector2d> extent;
     for (const MapPlane* plane : drawable_planes(map)) {
         const double upward = level.row(2).dot(plane->normal.cast<double>());
-        const bool drawn = upward >= -0.35;
+        const bool drawn = upward >= -kLevel;
         shown.push_back({plane, drawn, drawn && plane->area >= kNumberedArea_m2});
         if (!drawn) continue;
-        (upward > 0.35 ? surfaces : walls).push_back(plane);
+        (upward > kLevel ? surfaces : walls).push_back(plane);
         for (const auto& ring : world_rings(*plane))
             for (const auto& p : ring) extent.push_back((level * p).head<2>());
     }
@@ -135,6 +162,10 @@ std::string overhead_svg(const PlaneMap& map, const Trajectory& trajectory) {
     std::stable_sort(surfaces.begin(), surfaces.end(),
                      [&](auto* a, auto* b) { return height(a) < height(b); });
 
+    const std::vector<MapPlane> inferred = inferred_planes(map);
+    for (const MapPlane& plane : inferred)
+        for (const auto& ring : world_rings(plane))
+            for (const auto& p : ring) extent.push_back((level * p).head<2>());
     const Fit fit(extent, drawing_area(true));
     const auto project = [&](const Eigen::Vector3d& p) { return fit((level * p).head<2>()); };
     std::string shapes, labels;
@@ -145,9 +176,9 @@ std::string overhead_svg(const PlaneMap& map, const Trajectory& trajectory) {
                   css(color) + "\" fill-opacity=\"0.8\" stroke=\"" + css(color, 0.6) +
                   "\" stroke-width=\"0.8\">" + tooltip(*plane) + "</path>\n";
     }
+    for (const MapPlane& plane : inferred) shapes += inferred_part(plane, level, fit);
     for (const MapPlane* plane : walls) {
-        std::string d;
-        for (const auto& [from, to] : footprint(*plane, level)) d += move_to(fit(from)) + line_to(fit(to));
+        const std::string d = drawn_footprint(*plane, level, fit);
         shapes += "<path d=\"" + d + "\" fill=\"none\" stroke=\"" + css(label_color(plane->label)) +
                   "\" stroke-width=\"4\">" + tooltip(*plane) + "</path>\n";
     }
@@ -160,7 +191,7 @@ std::string overhead_svg(const PlaneMap& map, const Trajectory& trajectory) {
     return page(count_of(map.planes.size(), "plane") + " from above",
                 "walls and other upright planes as lines; " + up_text(map),
                 shapes + trajectory_line(trajectory, project) + labels + scale_bar(fit.scale()) +
-                    legend(shown, map.planes.size()));
+                    legend(shown, map.planes.size(), !inferred.empty()));
 }
 
 }  // namespace planemap::exports

@@ -35,6 +35,17 @@ std::vector<const MapPlane*> drawable_planes(const PlaneMap& map) {
     return drawable;
 }
 
+std::vector<MapPlane> inferred_planes(const PlaneMap& map) {
+    std::vector<MapPlane> planes;
+    for (const MapPlane* plane : drawable_planes(map)) {
+        const MapOutline* inferred = map.inferred_of(plane->id);
+        if (inferred == nullptr || inferred->empty() || !std::isfinite(inferred->unit)) continue;
+        planes.push_back(*plane);
+        planes.back().outline = *inferred;
+    }
+    return planes;
+}
+
 std::vector<std::vector<Eigen::Vector3d>> world_rings(const MapPlane& plane) {
     std::vector<std::vector<Eigen::Vector3d>> rings;
     const Pose world_from_plane = plane.world_from_plane();

@@ -23,6 +23,9 @@ std::string plane_name(const MapPlane& plane);
 /// The planes that can be drawn: all values finite, an outline that is not empty.
 std::vector<const MapPlane*> drawable_planes(const PlaneMap& map);
 
+/// The planes of which parts are inferred, with these as their outlines.
+std::vector<MapPlane> inferred_planes(const PlaneMap& map);
+
 /// The outline's rings in the world frame.
 std::vector<std::vector<Eigen::Vector3d>> world_rings(const MapPlane& plane);
 

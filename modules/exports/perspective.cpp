@@ -205,6 +205,20 @@ std::string shaded_plane(const Drawn& drawn, const Eigen::Vector3d& light, const
            "\" stroke-width=\"0.8\" stroke-linejoin=\"round\">" + tooltip(*drawn.plane) + "</path>\n";
 }
 
+/// Dashed, over all else: what is inferred of planes that face the camera.
+template <typename Project>
+std::string inferred_parts(const PlaneMap& map, const PerspectiveCamera& camera, const Project& project) {
+    std::string body;
+    for (const MapPlane& plane : inferred_planes(map)) {
+        if (!camera.is_in_front_of(plane.plane())) continue;
+        const Rgb color = id_color(plane.id);
+        body += "<path d=\"" + path(world_rings(plane), project) + "\" fill-rule=\"evenodd\" fill=\"" +
+                css(color) + "\" fill-opacity=\"0.15\" stroke=\"" + css(color, 0.5) +
+                "\" stroke-width=\"1\" stroke-dasharray=\"5 4\"/>\n";
+    }
+    return body;
+}
+
 /// Planes in the order given, with the intersections of those that are there.
 template <typename Project>
 std::string painted(const std::vector<Drawn>& planes, const PlaneMap& map, const Eigen::Vector3d& light,
@@ -260,7 +274,8 @@ std::string perspective_svg(const PlaneMap& map, const Trajectory& trajectory) {
                 "from above a corner; a colour a plane; the bar is true where it lies" +
                     (hidden == 0 ? "" : "; " + std::to_string(hidden) + " that face away are not drawn") +
                     "; " + up_text(map),
-                body + trajectory_line(trajectory, project) + (bar ? drawn_bar(*bar, project) : ""));
+                body + inferred_parts(map, camera, project) + trajectory_line(trajectory, project) +
+                    (bar ? drawn_bar(*bar, project) : ""));
 }
 
 }  // namespace planemap::exports

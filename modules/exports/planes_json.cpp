@@ -26,16 +26,22 @@ Json keyframes_json(int id, const std::optional<Sightings>& sightings) {
     return seen == sightings->end() ? std::vector<int>{} : seen->second;
 }
 
-Json plane_json(const MapPlane& plane, const std::optional<Sightings>& sightings) {
-    const PlanarRegion region = plane.region();
-    Json corners = Json::array(), outline = Json::array();
-    for (const Eigen::Vector3d& corner : region.box.corners()) corners.push_back(vector(corner));
-    for (const Ring& ring : region.outline.rings) {
+/// Rings of points in the world.
+Json rings_json(const Pose& world_from_outline, const Outline& outline) {
+    Json rings = Json::array();
+    for (const Ring& ring : outline.rings) {
         Json points = Json::array();
         for (const Eigen::Vector2d& v : ring)
-            points.push_back(vector(region.box.frame_from_box * Eigen::Vector3d(v.x(), v.y(), 0)));
-        outline.push_back(std::move(points));
+            points.push_back(vector(world_from_outline * Eigen::Vector3d(v.x(), v.y(), 0)));
+        rings.push_back(std::move(points));
     }
+    return rings;
+}
+
+Json plane_json(const PlaneMap& map, const MapPlane& plane, const std::optional<Sightings>& sightings) {
+    const PlanarRegion region = plane.region();
+    Json corners = Json::array();
+    for (const Eigen::Vector3d& corner : region.box.corners()) corners.push_back(vector(corner));
     Json json;
     json["id"] = plane.id;
     json["label"] = label_name(plane.label);
@@ -46,7 +52,9 @@ Json plane_json(const MapPlane& plane, const std::optional<Sightings>& sightings
     json["area"] = number(plane.area);
     json["center"] = vector(region.box.frame_from_box.translation());
     json["box_corners"] = std::move(corners);
-    json["outline"] = std::move(outline);
+    json["outline"] = rings_json(region.box.frame_from_box, region.outline);
+    if (const MapOutline* inferred = map.inferred_of(plane.id))
+        json["inferred_rings"] = rings_json(region.box.frame_from_box, inferred->rings());
     json["keyframe_count"] = plane.keyframes;
     json["keyframes"] = keyframes_json(plane.id, sightings);
     return json;
@@ -73,9 +81,8 @@ std::string planes_json(const PlaneMap& map, const std::optional<Sightings>& sig
     text += " \"utime\": " + std::to_string(map.utime) + ",\n \"revision\": " + std::to_string(map.revision) +
             ",\n";
     text += " \"up\": " + (map.up.isZero() ? Json() : vector(map.up.cast<double>(), 1e9)).dump() + ",\n";
-    text +=
-        " \"planes\": " + lines_of(map.planes, [&](auto& plane) { return plane_json(plane, sightings); }) +
-        ",\n";
+    text += " \"planes\": " +
+            lines_of(map.planes, [&](auto& plane) { return plane_json(map, plane, sightings); }) + ",\n";
     text += " \"lines\": " + lines_of(map.lines, [](const IntersectionLine& line) {
                 return Json{{"planes", {line.plane_a, line.plane_b}},
                             {"from", vector(line.from.cast<double>())},

@@ -487,6 +487,47 @@ Surfaces from_message(const surfaces_t& message) {
 
 namespace {
 
+/// For map_plane_t and inferred_rings_t.
+template <typename Message>
+void set_rings(Message& message, const MapOutline& outline, int plane) {
+    message.unit = outline.unit;
+    for_each_packed(
+        outline.packed,
+        [&](std::size_t size) { message.ring_sizes.push_back(static_cast<std::int16_t>(size)); },
+        [&](std::int16_t x, std::int16_t y) {
+            message.vertices.push_back({x, y});
+        });
+    if (message.ring_sizes.size() > 32767)
+        throw std::length_error("plane " + std::to_string(plane) + ": too many rings");
+    message.n_rings = static_cast<std::int16_t>(message.ring_sizes.size());
+    message.n_vertices = count32(message.vertices.size());
+}
+
+struct RingFields {
+    const char *unit, *ring_sizes;
+};
+template <typename Message>
+MapOutline rings_of(const Message& message, const RingFields& fields) {
+    MapOutline outline;
+    outline.unit = message.unit;
+    require(std::isfinite(message.unit) && message.unit > 0 && message.unit < 1, fields.unit,
+            "is not between 0 and 1");
+    const std::size_t vertices = message.vertices.size();
+    outline.packed.reserve(message.ring_sizes.size() + 2 * vertices);
+    std::size_t next = 0;
+    for (const std::int16_t size : message.ring_sizes) {
+        require(size >= 3, fields.ring_sizes, "has a ring of fewer than 3 vertices");
+        require(static_cast<std::size_t>(size) <= vertices - next, fields.ring_sizes,
+                "does not add up to the vertices");
+        outline.packed.push_back(size);
+        for (const std::size_t end = next + static_cast<std::size_t>(size); next < end; ++next)
+            outline.packed.insert(outline.packed.end(),
+                                  {message.vertices[next][0], message.vertices[next][1]});
+    }
+    require(next == vertices, fields.ring_sizes, "does not add up to the vertices");
+    return outline;
+}
+
 map_plane_t to_message(const MapPlane& plane) {
     map_plane_t message;
     message.id = plane.id;
@@ -503,17 +544,7 @@ map_plane_t to_message(const MapPlane& plane) {
     message.inliers = plane.inliers;
     message.area = plane.area;
     message.n_keyframes = plane.keyframes;
-    message.unit = plane.outline.unit;
-    for_each_packed(
-        plane.outline.packed,
-        [&](std::size_t size) { message.ring_sizes.push_back(static_cast<std::int16_t>(size)); },
-        [&](std::int16_t x, std::int16_t y) {
-            message.vertices.push_back({x, y});
-        });
-    if (message.ring_sizes.size() > 32767)
-        throw std::length_error("plane " + std::to_string(plane.id) + ": too many rings");
-    message.n_rings = static_cast<std::int16_t>(message.ring_sizes.size());
-    message.n_vertices = count32(message.vertices.size());
+    set_rings(message, plane.outline, plane.id);
     return message;
 }
 
@@ -530,7 +561,6 @@ MapPlane from_message(const map_plane_t& message) {
     plane.inliers = message.inliers;
     plane.area = message.area;
     plane.keyframes = message.n_keyframes;
-    plane.outline.unit = message.unit;
     require(plane.normal.allFinite() && std::abs(plane.normal.norm() - 1) < 1e-3f, "plane.normal",
             "is not a unit vector");
     require(plane.center.allFinite() && std::isfinite(message.d), "plane.center", "is not finite");
@@ -541,21 +571,7 @@ MapPlane from_message(const map_plane_t& message) {
     require(std::isfinite(plane.area) && plane.area >= 0, "plane.area", "is negative or not finite");
     require(std::isfinite(plane.inliers) && plane.inliers >= 3, "plane.inliers", "are fewer than 3");
     require(message.n_keyframes >= 0, "plane.n_keyframes", "is negative");
-    require(std::isfinite(message.unit) && message.unit > 0 && message.unit < 1, "plane.unit",
-            "is not between 0 and 1");
-    const std::size_t vertices = message.vertices.size();
-    plane.outline.packed.reserve(message.ring_sizes.size() + 2 * vertices);
-    std::size_t next = 0;
-    for (const std::int16_t size : message.ring_sizes) {
-        require(size >= 3, "plane.ring_sizes", "has a ring of fewer than 3 vertices");
-        require(static_cast<std::size_t>(size) <= vertices - next, "plane.ring_sizes",
-                "does not add up to the vertices");
-        plane.outline.packed.push_back(size);
-        for (const std::size_t end = next + static_cast<std::size_t>(size); next < end; ++next)
-            plane.outline.packed.insert(plane.outline.packed.end(),
-                                        {message.vertices[next][0], message.vertices[next][1]});
-    }
-    require(next == vertices, "plane.ring_sizes", "does not add up to the vertices");
+    plane.outline = rings_of(message, {"plane.unit", "plane.ring_sizes"});
     return plane;
 }
 
@@ -599,6 +615,12 @@ plane_map_t to_message(const PlaneMap& map, std::int32_t seq, std::int64_t sessi
         for (std::size_t i = 0; i < 3; ++i) m.planes[i] = index(point.planes[i]);
     }
     message.n_points = count32(message.points.size());
+    for (const InferredRings& rings : map.inferred) {
+        inferred_rings_t& m = message.inferred.emplace_back();
+        m.plane = index(rings.plane);
+        set_rings(m, rings.outline, rings.plane);
+    }
+    message.n_inferred = count32(message.inferred.size());
     return message;
 }
 
@@ -639,6 +661,12 @@ PlaneMap from_message(const plane_map_t& message) {
         const auto position = shared_point(a, b, c);
         require(position.has_value(), "point", "joins planes that do not meet in one point");
         map.points.push_back({{a.id, b.id, c.id}, position->cast<float>()});
+    }
+    map.inferred.reserve(message.inferred.size());
+    for (const inferred_rings_t& rings : message.inferred) {
+        const int id = plane_at(rings.plane, "inferred.plane").id;
+        require(map.inferred.empty() || id > map.inferred.back().plane, "inferred.plane", "does not ascend");
+        map.inferred.push_back({id, rings_of(rings, {"inferred.unit", "inferred.ring_sizes"})});
     }
     return map;
 }

@@ -180,6 +180,13 @@ void walk(Walker& w, const plane_map_t*) {
     w.array(w.length("n_lines"), 4 + 8, "lines");
     w.array(w.length("n_points"), 6, "points");
     w.skip(8, "session");
+    const std::int32_t inferred = w.length("n_inferred");
+    w.bound(inferred, 12, "inferred");
+    for (std::int32_t i = 0; i < inferred; ++i) {
+        w.skip(2 + 4, "inferred");
+        w.array(w.length("inferred.n_rings", 2), 2, "inferred.ring_sizes");
+        w.array(w.length("inferred.n_vertices"), 4, "inferred.vertices");
+    }
 }
 void walk(Walker& w, const map_size_t*) {
     w.skip(8 + 4 + 8 * 6 + 8 + 8, "sizes");
@@ -218,7 +225,7 @@ std::vector<Earlier> earlier(const planar_regions_t*) {
     return {{0xaedd3398cc393ca2, zeros(8)}};
 }
 std::vector<Earlier> earlier(const plane_map_t*) {
-    return {{0xad69623d7bd0a548, zeros(8)}};
+    return {{0x890cd1fe3f86f0fa, zeros(4)}, {0xad69623d7bd0a548, zeros(8 + 4)}};
 }
 std::vector<Earlier> earlier(const map_size_t*) {
     return {{0xcc3bbfa6fd82ffe7, zeros(8)}};

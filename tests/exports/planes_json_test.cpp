@@ -39,6 +39,24 @@ TEST(PlanesJson, SaysWhatTheMapSays) {
     EXPECT_TRUE(nlohmann::json::parse(planes_json(map))["planes"][0]["keyframes"].is_null()) << "not known";
 }
 
+TEST(PlanesJson, InferredRingsAreBesideWhatIsSeen) {
+    PlaneMap map = corner();
+    map.inferred.push_back({3, MapOutline(Outline{{{{0, 0}, {0.5, 0}, {0.5, 0.25}}}})});
+    const auto with = nlohmann::json::parse(planes_json(map)),
+               without = nlohmann::json::parse(planes_json(corner()));
+    auto wall = with["planes"][1];
+    ASSERT_EQ(wall["inferred_rings"].size(), 1u);
+    ASSERT_EQ(wall["inferred_rings"][0].size(), 3u);
+    for (const auto& p : wall["inferred_rings"][0]) EXPECT_NEAR(p[0], 1, 1e-6) << "in the world";
+    wall.erase("inferred_rings");
+    EXPECT_EQ(wall, without["planes"][1]) << "nothing else changes";
+    EXPECT_EQ(with["planes"][0], without["planes"][0]);
+    for (const std::string& svg : {overhead_svg(map, {}), perspective_svg(map, {})})
+        EXPECT_NE(svg.find("stroke-dasharray"), std::string::npos);
+    EXPECT_EQ(overhead_svg(corner(), {}).find("stroke-dasharray"), std::string::npos);
+    EXPECT_EQ(planes_ply(map, {}), planes_ply(corner(), {}));
+}
+
 TEST(PlanesJson, OfAnEmptyMapAndOfNan) {
     const auto empty = nlohmann::json::parse(planes_json({}));
     EXPECT_TRUE(empty["up"].is_null());

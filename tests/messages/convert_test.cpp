@@ -227,7 +227,7 @@ TEST(Convert, MapPlaneTakesAtMost96BytesAnd4AVertex) {
 TEST(Convert, LabelsThatAreAddedDoNotChangeTheTypes) {
     // Constants are no part of a fingerprint: who was built before LABEL_VERTICAL decodes today's maps.
     EXPECT_EQ(static_cast<std::uint64_t>(map_plane_t::getHash()), 0x783e0d562cdf171eu);
-    EXPECT_EQ(static_cast<std::uint64_t>(plane_map_t::getHash()), 0x890cd1fe3f86f0fau);
+    EXPECT_EQ(fingerprints<plane_map_t>().at(1), 0x890cd1fe3f86f0fau);
     PlaneMap map = room_map(4);
     map.planes[0].label = PlaneLabel::kVertical;
     EXPECT_EQ(from_message(to_message(map, 1)).planes[0].label, PlaneLabel::kVertical);
@@ -298,6 +298,38 @@ TEST(Convert, IntersectionsComeBack) {
     ASSERT_EQ(back.points.size(), 1u);
     EXPECT_EQ(back.points[0].planes, map.points[0].planes);
     EXPECT_LT((back.points[0].position - at).norm(), 1e-4f);
+}
+
+TEST(Convert, InferredPartsComeBackAsTheyWere) {
+    PlaneMap map = test::sample_map();
+    const Outline part{{{{0, 0}, {40, 0}, {40, 1.5}, {0, 1.5}}, {{1, 0.5}, {1, 1}, {2, 1}}}};
+    map.inferred = {{4, MapOutline(part)}, {9, MapOutline(part)}};
+    PlaneMap plain = map;
+    plain.inferred.clear();
+    EXPECT_EQ(to_message(map, 1).getEncodedSize() - to_message(plain, 1).getEncodedSize(),
+              2 * (12 + 2 * 2 + 4 * 7));
+    const PlaneMap back = from_message(to_message(map, 1));
+    ASSERT_EQ(back.inferred.size(), 2u);
+    EXPECT_EQ(back.inferred_of(1), nullptr);
+    ASSERT_NE(back.inferred_of(4), nullptr);
+    EXPECT_EQ(*back.inferred_of(4), map.inferred[0].outline) << "40 m from the middle, too";
+    EXPECT_EQ(back.inferred[1].plane, 9);
+    for (std::size_t i = 0; i < map.planes.size(); ++i)
+        EXPECT_EQ(back.planes[i].area, map.planes[i].area) << "they count in no area";
+
+    const auto refused = [&](auto spoil) {
+        plane_map_t message = to_message(map, 1);
+        spoil(message.inferred[1]);
+        EXPECT_THROW(from_message(message), MessageError);
+    };
+    refused([](inferred_rings_t& m) { m.plane = 3; });
+    refused([](inferred_rings_t& m) { m.plane = -1; });
+    refused([](inferred_rings_t& m) { m.plane = 1; });  // the same again
+    refused([](inferred_rings_t& m) { m.unit = 0; });
+    refused([](inferred_rings_t& m) { m.unit = std::numeric_limits<float>::quiet_NaN(); });
+    refused([](inferred_rings_t& m) { m.ring_sizes[0] = 2; });
+    refused([](inferred_rings_t& m) { m.ring_sizes[0] = 30000; });
+    refused([](inferred_rings_t& m) { m.ring_sizes.pop_back(); });
 }
 
 TEST(Convert, MapReferencesMustExist) {

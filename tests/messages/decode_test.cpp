@@ -106,15 +106,22 @@ TEST(Decode, AnotherTypesFingerprintIsAnError) {
 
 /// A message of a type that grew is bounded like any other.
 TEST(Decode, AnEarlierTypesMessageIsTakenAndADamagedOneIsRefused) {
-    std::vector<std::uint8_t> earlier = encoded(to_message(sample_map(), 7));
-    earlier.resize(earlier.size() - 8);  // session
-    const std::uint64_t fingerprint = fingerprints<plane_map_t>().at(1);
-    for (std::size_t i = 0; i < 8; ++i) earlier[i] = static_cast<std::uint8_t>(fingerprint >> (56 - 8 * i));
-    EXPECT_EQ(encoded(decode<plane_map_t>(earlier)), encoded(to_message(sample_map(), 7)));
-    EXPECT_TRUE(is_a<plane_map_t>(earlier));
-    EXPECT_FALSE(is_a<camera_info_t>(earlier));
-    for (std::size_t length = 0; length < earlier.size(); ++length)
-        EXPECT_THROW(decode<plane_map_t>(std::span(earlier).first(length)), MessageError) << length;
+    PlaneMap map = sample_map();
+    map.inferred.clear();
+    const std::vector<std::uint8_t> today = encoded(to_message(map, 7));
+    ASSERT_EQ(fingerprints<plane_map_t>().size(), 3u);
+    for (const auto& [number, missing] : {std::pair(1, 4), std::pair(2, 12)}) {  // n_inferred; session, too
+        std::vector<std::uint8_t> earlier = today;
+        earlier.resize(earlier.size() - static_cast<std::size_t>(missing));
+        const std::uint64_t fingerprint = fingerprints<plane_map_t>().at(static_cast<std::size_t>(number));
+        for (std::size_t i = 0; i < 8; ++i)
+            earlier[i] = static_cast<std::uint8_t>(fingerprint >> (56 - 8 * i));
+        EXPECT_EQ(encoded(decode<plane_map_t>(earlier)), today);
+        EXPECT_TRUE(is_a<plane_map_t>(earlier));
+        EXPECT_FALSE(is_a<camera_info_t>(earlier));
+        for (std::size_t length = 0; length < earlier.size(); ++length)
+            EXPECT_THROW(decode<plane_map_t>(std::span(earlier).first(length)), MessageError) << length;
+    }
 }
 
 TEST(Decode, HugeLengthIsRefusedBeforeAllocation) {

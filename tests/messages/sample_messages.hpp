@@ -64,6 +64,7 @@ inline PlaneMap sample_map() {
     }
     map.lines.push_back({1, 4, {0, 0, 0}, {1, 0, 0}});
     map.points.push_back({{1, 4, 9}, {0, 0, 1}});
+    map.inferred.push_back({4, MapOutline(Outline{{{{0, 0}, {1, 0}, {1, 0.5}}}})});
     return map;
 }
 
