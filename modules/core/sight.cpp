@@ -94,6 +94,15 @@ Sight::Sight(const std::vector<PlanarRegion>& regions) {
         if (filling.covered[cell] != 15) cells_[cell] = kNone;
 }
 
+bool Sight::may_hold(const Eigen::Vector3d& center, double radius) const {
+    if (center.z() < -radius) return false;
+    const auto beside = [&](double low, double high, double across) {
+        return low * center.z() - across > radius * std::sqrt(1 + low * low) ||
+               across - high * center.z() > radius * std::sqrt(1 + high * high);
+    };
+    return !beside(low_.x(), high().x(), center.x()) && !beside(low_.y(), high().y(), center.y());
+}
+
 int count_seen_past(const SeenRegions& one, const SeenRegions& other, const Pose& other_from_one,
                     const PastRules& rules, const DepthNoise& noise) {
     int past = 0;

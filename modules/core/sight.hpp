@@ -49,6 +49,9 @@ class Sight {
         return low_ + Eigen::Vector2d(kWidth / per_cell_.x(), kHeight / per_cell_.y());
     }
 
+    /// False for a ball (camera frame) that is behind the camera or beside what it covers.
+    bool may_hold(const Eigen::Vector3d& center_camera, double radius) const;
+
     /// Distance from the camera to the farthest of it, metres.
     double reach() const { return reach_; }
 

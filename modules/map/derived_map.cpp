@@ -44,6 +44,7 @@ void DerivedMap::start_from(const PlaneMap& map) {
     map_.up = map.up;
     earlier_up_ = map.up;
     if (!map.up.isZero()) why_up_ = kByEarlier;
+    inferred_.start_from(map);
 }
 
 void DerivedMap::take_labels(const PlaneMap& earlier) {
@@ -106,8 +107,10 @@ std::map<int, std::vector<Meeting>> DerivedMap::meetings() const {
     return meetings;
 }
 
-/// Lays the outlines of planes that changed, or whose lines did, on these.
-void DerivedMap::end_at_lines(const std::vector<PlaneEstimate>& estimates, const std::vector<int>& changed) {
+/// Lays the outlines of planes that changed, or whose lines did, on these; returns which, ascending.
+std::vector<int> DerivedMap::end_at_lines(const std::vector<PlaneEstimate>& estimates,
+                                          const std::vector<int>& changed) {
+    std::vector<int> laid;
     std::map<int, std::vector<Meeting>> meetings = this->meetings();
     for (const PlaneEstimate& estimate : estimates) {
         const auto plane = std::lower_bound(map_.planes.begin(), map_.planes.end(), estimate.id,
@@ -122,8 +125,11 @@ void DerivedMap::end_at_lines(const std::vector<PlaneEstimate>& estimates, const
             *plane = std::move(*ended);
         }
         met_[estimate.id] = now;
+        laid.push_back(estimate.id);
     }
     std::erase_if(met_, [&](const auto& of) { return map_.find(of.first) == nullptr; });
+    std::sort(laid.begin(), laid.end());
+    return laid;
 }
 
 void DerivedMap::refresh(std::vector<PlaneEstimate>& estimates, const std::map<int, Pose>& poses,
@@ -150,10 +156,11 @@ void DerivedMap::refresh(std::vector<PlaneEstimate>& estimates, const std::map<i
     map_.planes = std::move(planes);
     std::sort(changed.begin(), changed.end());
     intersections_.update(map_, changed);
-    end_at_lines(estimates, changed);
+    const std::vector<int> laid = end_at_lines(estimates, changed);
     const bool more_is_told =
         told.revision() != told_revision_ || (told.revision() > 0 && poses.size() != told_poses_);
     if (!changed.empty() || more_is_told) label(poses, told);
+    if (!laid.empty() || !changed.empty()) inferred_.update(map_, laid);
 }
 
 }  // namespace planemap::map

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/plane_map.hpp"
+#include "map/inferred_parts.hpp"
 #include "map/map_intersections.hpp"
 #include "map/plane_derivation.hpp"
 #include "map/told_up.hpp"
@@ -18,13 +19,14 @@ namespace planemap::map {
 /// The map that others see, kept beside the estimates it is derived from: what hardly changed is left alone.
 class DerivedMap {
   public:
-    DerivedMap(const DerivationRules& derivation, const AdjacencyRules& adjacency)
-        : derivation_(derivation), adjacency_(adjacency), intersections_(adjacency) {}
+    DerivedMap(const DerivationRules& derivation, const AdjacencyRules& adjacency,
+               const InferenceRules& inference = {})
+        : derivation_(derivation), adjacency_(adjacency), intersections_(adjacency), inferred_(inference) {}
 
     const PlaneMap& map() const { return map_; }
     bool left_out_points() const { return intersections_.left_out_points(); }
     /// Bytes of what is kept beside the map.
-    std::size_t working_bytes() const { return intersections_.memory_bytes(); }
+    std::size_t working_bytes() const { return intersections_.memory_bytes() + inferred_.memory_bytes(); }
 
     /// Goes on from a map in time, and with its up until up is found.
     void start_from(const PlaneMap& map);
@@ -39,6 +41,11 @@ class DerivedMap {
     /// are world_from_camera of keyframes, by id. Estimates are marked as derived.
     void refresh(std::vector<PlaneEstimate>& estimates, const std::map<int, Pose>& poses,
                  const ToldUp& told = {});
+    /// Infers hidden parts anew, see InferredParts; until the next time, refresh() cuts off what is seen.
+    /// `views`, the newest first.
+    void infer(const std::vector<Viewpoint>& views) { inferred_.infer(map_, views); }
+    /// What is inferred now stays, though views that hide it go.
+    void keep_inferred() { inferred_.keep(map_); }
     /// Where map().up is from, or why it is not known: a clause.
     const std::string& why_up() const { return why_up_; }
 
@@ -46,11 +53,13 @@ class DerivedMap {
     void label(const std::map<int, Pose>& poses, const ToldUp& told);
     bool derive(PlaneEstimate& estimate, std::optional<MapPlane>& plane) const;
     std::map<int, std::vector<Meeting>> meetings() const;
-    void end_at_lines(const std::vector<PlaneEstimate>& estimates, const std::vector<int>& changed);
+    std::vector<int> end_at_lines(const std::vector<PlaneEstimate>& estimates,
+                                  const std::vector<int>& changed);
 
     DerivationRules derivation_;
     AdjacencyRules adjacency_;
     MapIntersections intersections_;
+    InferredParts inferred_;
     PlaneMap map_;
     std::map<int, std::vector<Meeting>> met_;  ///< where each plane's outline ends at others, as it was laid
     Eigen::Vector3f earlier_up_ = Eigen::Vector3f::Zero();  ///< of the map to start from; zero: not known

@@ -19,15 +19,8 @@ constexpr std::size_t kTidyAfter = 8;
 
 /// False for what is behind the camera, beyond its reach, or beside its pyramid.
 bool may_see(const Sight& sight, const Eigen::Vector3d& center_camera, double radius) {
-    const Eigen::Vector3d& center = center_camera;
-    if (center.z() < -radius || center.squaredNorm() > std::pow(radius + sight.reach(), 2)) return false;
-    const auto beside = [&](double low, double high, double across) {
-        return low * center.z() - across > radius * std::sqrt(1 + low * low) ||
-               across - high * center.z() > radius * std::sqrt(1 + high * high);
-    };
-    const Eigen::Vector2d& low = sight.low();
-    const Eigen::Vector2d high = sight.high();
-    return !beside(low.x(), high.x(), center.x()) && !beside(low.y(), high.y(), center.y());
+    return center_camera.squaredNorm() <= std::pow(radius + sight.reach(), 2) &&
+           sight.may_hold(center_camera, radius);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "core/angle.hpp"
 #include "map/hand_over.hpp"
+#include "map/rebuild.hpp"
 #include "map/starting_planes.hpp"
 
 namespace planemap::map {
@@ -29,6 +30,10 @@ DerivationRules derivation_rules(const MapOptions& options) {
             options.min_keyframes};
 }
 
+InferenceRules inference_rules(const MapOptions& options) {
+    return {options.infer_hidden, options.outline_cell_m, options.outline_tolerance_m, options.min_area_m2};
+}
+
 AdjacencyRules adjacency_rules(const MapOptions& options) {
     constexpr double kCells = 1.5;  // by which a shape that is drawn in cells, and closed, errs
     return {options.adjacency_gap_m, radians(options.adjacency_angle_deg), options.adjacency_length_m,
@@ -41,7 +46,7 @@ PlaneMapper::PlaneMapper(const MapOptions& options)
     : options_(validated(options)),
       keyframes_(options.max_extent_m),
       planes_(options),
-      derived_(derivation_rules(options), adjacency_rules(options)) {}
+      derived_(derivation_rules(options), adjacency_rules(options), inference_rules(options)) {}
 
 void PlaneMapper::start_from(const PlaneMap& map) {
     StartingPlanes start = starting_planes(map, options_.max_extent_m, options_.outline_cell_m);
@@ -52,6 +57,7 @@ void PlaneMapper::start_from(const PlaneMap& map) {
     rebuild();
     refresh();
     derived_.take_labels(map);
+    infer();
 }
 
 void PlaneMapper::add(const Keyframe& keyframe) {
@@ -95,6 +101,7 @@ void PlaneMapper::update(const KeyframeTrajectory& trajectory) {
             if (keyframes_.is_waiting(named.id)) place(named.id);
     }
     refresh();
+    if (motion.of_note) infer();
 }
 
 void PlaneMapper::restore_ids(const Surfaces& surfaces) {
@@ -111,12 +118,14 @@ void PlaneMapper::restore_ids(const Surfaces& surfaces) {
     }
     rebuild();
     refresh();
+    infer();
 }
 
 void PlaneMapper::settle() {
     if (settled_) return;
     rebuild();
     refresh();
+    infer();
 }
 
 /// Puts a keyframe into the map if its pose is known.
@@ -133,6 +142,7 @@ void PlaneMapper::place(int keyframe_id) {
 void PlaneMapper::fold() {
     if (options_.fold_after == 0) return;
     const std::map<int, StoredKeyframe>& keyframes = keyframes_.keyframes();
+    if (keyframes.size() > static_cast<std::size_t>(options_.fold_after)) derived_.keep_inferred();
     while (keyframes.size() > static_cast<std::size_t>(options_.fold_after)) {
         const auto& [id, keyframe] = *keyframes.begin();
         if (!keyframe.world_from_camera) return;
@@ -161,6 +171,11 @@ void PlaneMapper::rebuild() {
     for (const auto& [id, keyframe] : keyframes_.keyframes())
         if (keyframe.world_from_camera) derived_.seen_at(keyframe.utime);
     settled_ = true;
+}
+
+/// Infers what is hidden of the planes as they are after a rebuild.
+void PlaneMapper::infer() {
+    derived_.infer(options_.infer_hidden ? viewpoints(keyframes_) : std::vector<Viewpoint>());
 }
 
 Moments PlaneMapper::moments(int plane_id) const {

@@ -120,6 +120,7 @@ class PlaneMapper {
     void fold();
     void hand_over_replaced(const KeyframeTrajectory& trajectory);
     void rebuild();
+    void infer();
     void refresh() { derived_.refresh(planes_.estimates(), keyframes_.poses(), told_); }
 
     MapOptions options_;

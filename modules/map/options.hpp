@@ -33,6 +33,7 @@ struct MapOptions {
     double moved_m = 0.002;
     double moved_deg = 0.05;
     double max_extent_m = 200;
+    bool infer_hidden = true;
     int fold_after = 0;
     int threads = 2;
 

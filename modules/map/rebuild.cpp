@@ -79,7 +79,7 @@ void Rebuild::draw(PlaneSet& planes, const RegionJoiner& joiner, const FreeSpace
         const SeenRegion& entry = entries_[i];
         if (entry.plane != PlaneSet::none()) seen[entry.plane].push_back(&entry);
     }
-    const std::vector<Viewpoint> viewpoints = this->viewpoints();
+    const std::vector<Viewpoint> viewpoints = map::viewpoints(store_);
     // Shapes are independent of each other.
     std::atomic<std::size_t> next{0};
     const auto work = [&] {
@@ -108,11 +108,10 @@ void Rebuild::draw(PlaneEstimate& plane, const std::vector<const SeenRegion*>& s
     plane.changed_cells = PlaneEstimate::kAllCells;
 }
 
-/// Of all views, the newest first.
-std::vector<Viewpoint> Rebuild::viewpoints() const {
+std::vector<Viewpoint> viewpoints(const KeyframeStore& store) {
     std::vector<Viewpoint> viewpoints;
-    viewpoints.reserve(store_.keyframes().size());
-    for (const auto& [id, keyframe] : store_.keyframes()) {
+    viewpoints.reserve(store.keyframes().size());
+    for (const auto& [id, keyframe] : store.keyframes()) {
         if (!keyframe.world_from_camera) continue;
         for_each_view(keyframe, [&](const StoredKeyframe& view) { viewpoints.emplace_back(view); });
     }

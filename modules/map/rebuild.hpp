@@ -15,6 +15,9 @@
 
 namespace planemap::map {
 
+/// Of all keyframes with a pose and their looks, the newest first.
+std::vector<Viewpoint> viewpoints(const KeyframeStore& store);
+
 /// Makes all planes anew, see Planes::rebuild(): one object for one time, its steps in this order.
 class Rebuild {
   public:
@@ -32,7 +35,6 @@ class Rebuild {
   private:
     void draw(PlaneEstimate& plane, const std::vector<const SeenRegion*>& seen, RegionJoiner& joiner,
               const FreeSpace& free_space, const std::vector<Viewpoint>& viewpoints) const;
-    std::vector<Viewpoint> viewpoints() const;
     void rename_folded(const PlaneSet& planes, const std::vector<std::size_t>& now);
 
     KeyframeStore& store_;
