@@ -114,6 +114,7 @@ void add_flags(messages::Flags& flags, Arguments& arguments) {
 void judge(const std::vector<evaluation::TruePlane>& truth, const Pose& truth_from_map, Row& row) {
     row.judgement = evaluation::judge(truth, row.run.map, truth_from_map);
     row.edges = evaluation::judge_edges(truth, row.run.map, truth_from_map);
+    row.inferred = evaluation::judge_inferred(truth, row.run.map, truth_from_map);
 }
 
 /// The rows of one sequence, for the kinds of poses that were asked for.

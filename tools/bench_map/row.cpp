@@ -73,6 +73,7 @@ constexpr Goal kGoals[] = {
     {"lines on an edge, share", true, 0.95, 3, "lines_right"},
     {"corners found, share", true, 0.9, 3, "corners_found"},
     {"points on a corner, share", true, 0.95, 3, "points_right"},
+    {"inferred, on the true plane, share", true, 0.95, 3, "inferred_right"},
     {"outline to its line, p90, m", false, 0.02, 4, "outline_to_line_p90_m"},
     {"leaves explained, share", true, 0.75, 3, "leaves_explained"},
     {"area supported, share", true, 0.9, 3, "area_supported"},
@@ -93,6 +94,7 @@ Json to_json(const Row& row) {
     json["planes"] = row.run.map.planes.size();
     json.update(figures_of(row.judgement));
     json.update(edge_figures(row.edges));
+    json.update(inferred_figures(row.inferred));
     json["leaves_explained"] =
         known(row.run.coverage, [](const Coverage& coverage) { return coverage.leaves_explained; });
     json["area_supported"] =

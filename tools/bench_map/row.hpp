@@ -22,6 +22,7 @@ struct Row {
     std::optional<evaluation::Judgement> judgement;                 ///< nothing without the true planes
     std::vector<SurfaceCheck> surfaces;                             ///< empty where it was not done
     std::optional<evaluation::EdgeJudgement> edges = std::nullopt;  ///< nothing without the true planes
+    std::optional<evaluation::InferredJudgement> inferred = std::nullopt;  ///< the same
 };
 
 /// A row as --json writes it; null for what is not known.

@@ -125,6 +125,13 @@ Json edge_figures(const std::optional<EdgeJudgement>& edges) {
     return json;
 }
 
+Json inferred_figures(const std::optional<InferredJudgement>& inferred) {
+    Json json;
+    json["inferred_m2"] = known(inferred, [](const InferredJudgement& i) { return i.area_m2; });
+    json["inferred_right"] = benchmark::number(inferred ? inferred->right().value_or(NAN) : NAN);
+    return json;
+}
+
 std::string judgement_details(const Judgement& judgement, bool all) {
     std::string lines =
         plane_lines(judgement, "not found", [](const auto& plane) { return !plane.found; }) +

@@ -8,6 +8,7 @@
 
 #include "benchmark/table.hpp"
 #include "evaluate/edge_judge.hpp"
+#include "evaluate/inferred_judge.hpp"
 #include "evaluate/plane_judge.hpp"
 #include "evaluate/statistics.hpp"
 
@@ -26,6 +27,7 @@ Json figure_of(const Statistics& errors, double Statistics::*figure);
 /// known, without a judgement for everything.
 Json figures_of(const std::optional<Judgement>& judgement);
 Json edge_figures(const std::optional<EdgeJudgement>& edges);
+Json inferred_figures(const std::optional<InferredJudgement>& inferred);
 
 /// What to look at: true planes not found or split, spurious map planes, the worst outline, the pairs with
 /// the largest errors, map planes on several true ones, true planes that look alike. With `all`, every true

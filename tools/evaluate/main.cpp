@@ -146,6 +146,11 @@ void print_edges(const evaluation::EdgeJudgement& edges) {
                 edges.right_points, edges.points);
 }
 
+void print_inferred(const evaluation::InferredJudgement& inferred) {
+    std::printf("inferred: %.2f m2, %.1f %% of it on the true plane\n", inferred.area_m2,
+                100 * inferred.right().value_or(0));
+}
+
 /// The two trajectories, and how their poses are matched: by time, or without timestamps by their number.
 struct Pair {
     TrajectoryFile truth, estimate;
@@ -235,6 +240,7 @@ void add_delta(const Arguments& arguments, const Pair& pair, bool as_text, nlohm
 struct JudgedMap {
     evaluation::Judgement planes;
     evaluation::EdgeJudgement edges;
+    evaluation::InferredJudgement inferred;
 };
 
 /// The map in `folder`; nothing for another truth than a simulated one.
@@ -244,7 +250,8 @@ std::optional<JudgedMap> judged_map(const std::string& truth, const std::filesys
     if (!planes) return std::nullopt;
     const PlaneMap map = map::read_plane_map(folder / "plane_map.lcmlog");
     return JudgedMap{evaluation::judge(*planes, map, truth_from_map),
-                     evaluation::judge_edges(*planes, map, truth_from_map)};
+                     evaluation::judge_edges(*planes, map, truth_from_map),
+                     evaluation::judge_inferred(*planes, map, truth_from_map)};
 }
 
 void run(Arguments arguments) {
@@ -263,6 +270,7 @@ void run(Arguments arguments) {
     if (judgement) {
         json["map"] = evaluation::figures_of(std::optional(judgement->planes));
         json["map"].update(evaluation::edge_figures(std::optional(judgement->edges)));
+        json["map"].update(evaluation::inferred_figures(std::optional(judgement->inferred)));
     }
     const bool as_text = arguments.json_file != "-";
     if (as_text && pair.by_index)
@@ -272,6 +280,7 @@ void run(Arguments arguments) {
     if (as_text && judgement) {
         print_judgement(judgement->planes);
         print_edges(judgement->edges);
+        print_inferred(judgement->inferred);
     }
     if (arguments.json_file == "-") {
         print(json.dump(2) + "\n");

@@ -21,6 +21,7 @@ struct TruePlane {
     Plane plane;       ///< world frame; the normal points to the side that can be seen
     Pose world_from_plane = Pose::Identity();  ///< z is the normal; frame of the raster
     PlaneRaster visible;                       ///< at least one cell
+    PlaneRaster material;                      ///< all of the plane, seen or not; of the size of `visible`
 
     /// Middle of the visible surface, world frame.
     Eigen::Vector3d centre() const;

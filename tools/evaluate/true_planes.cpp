@@ -210,6 +210,7 @@ std::vector<TruePlane> TruthCollector::planes() const {
                 plane.plane = group.plane;
                 plane.world_from_plane = group.world_from_plane;
                 plane.visible = group.visible;
+                plane.material = group.material;
                 std::fill(plane.visible.mask.cells.begin(), plane.visible.mask.cells.end(), std::uint8_t{0});
             }
             plane.visible.mask.set(column, row);
