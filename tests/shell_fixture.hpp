@@ -29,6 +29,7 @@ class ShellTest : public testing::Test {
     /// A wall at 2 m with squares of many shades, moved sideways by `shift` metres.
     static bot_core::images_t frame(std::int64_t utime, double shift = 0) {
         RgbImage color(kWidth, kHeight);
+        DepthImage depth(kWidth, kHeight);
         for (int v = 0; v < kHeight; ++v) {
             for (int u = 0; u < kWidth; ++u) {
                 // Turned, so that no corner falls on the pixel grid the same way as another.
@@ -39,18 +40,27 @@ class ShellTest : public testing::Test {
                 cell = (cell ^ cell >> 31) * 0x9e3779b97f4a7c15u;
                 cell = (cell ^ cell >> 29) * 0xbf58476d1ce4e5b9u;
                 const bool gap = std::fmod(x + 50, 0.2) < 0.07 || std::fmod(y + 50, 0.2) < 0.07;
-                const auto level = static_cast<std::uint8_t>(gap ? 20 : (cell >> 40) % 160 + 80);
+                const auto noise = noise_of(u, v, utime);
+                const auto level = static_cast<std::uint8_t>((gap ? 20 : (cell >> 40) % 160 + 80) + noise);
                 color(u, v) = {level, level, level};
+                depth(u, v) = static_cast<std::uint16_t>(2000 + noise);
             }
         }
         bot_core::images_t images;
         images.utime = utime;
         images.image_types = {bot_core::images_t::LEFT, bot_core::images_t::DEPTH_MM};
         images.images = {messages::color_image_message(color, utime, messages::ColorEncoding::kRaw, 90),
-                         messages::depth_image_message(DepthImage(kWidth, kHeight, 2000), utime,
-                                                       messages::DepthEncoding::kRaw)};
+                         messages::depth_image_message(depth, utime, messages::DepthEncoding::kRaw)};
         images.n_images = 2;
         return images;
+    }
+
+    /// 0 or 1: two images of a still scene differ, as a sensor's do.
+    static unsigned noise_of(int u, int v, std::int64_t utime) {
+        auto x = static_cast<std::uint64_t>(utime) * 0x9e3779b97f4a7c15u +
+                 static_cast<std::uint64_t>(v * kWidth + u);
+        x = (x ^ x >> 31) * 0xbf58476d1ce4e5b9u;
+        return static_cast<unsigned>(x >> 50 & 1);
     }
 
     void publish_camera() {

@@ -20,13 +20,18 @@ struct FramePose {
     Pose keyframe_from_camera = Pose::Identity(), odom_from_camera = Pose::Identity();
 };
 
-/// world_from_camera of the frames that were not lost, by time: each at its keyframe, or, where no trajectory
+/// Of those that are kept, it is known where they were.
+inline bool is_placed(const FramePose& frame) {
+    return frame.status != TrackingStatus::kLost;
+}
+
+/// world_from_camera of the frames that have a place, by time: each at its keyframe, or, where no trajectory
 /// named that, where the odom frame lies. `frames` are FramePoses or OdometryEstimates.
 template <typename Frames>
 Trajectory place_frames(const Frames& frames, const KeyframePoses& keyframes, const Pose& world_from_odom) {
     Trajectory trajectory;
     for (const auto& frame : frames) {
-        if (frame.status == TrackingStatus::kLost) continue;
+        if (!is_placed(frame)) continue;
         const std::optional<Pose> keyframe = keyframes.pose_of(frame.keyframe_id);
         trajectory.push_back({frame.pose_utime, keyframe ? *keyframe * frame.keyframe_from_camera
                                                          : world_from_odom * frame.odom_from_camera});

@@ -16,8 +16,14 @@ enum class TrackingStatus : std::int8_t {
     kLost = 0,     ///< no pose
     kTracked = 1,  ///< a pose, all directions determined
     kDegenerate =
-        2,  ///< a pose, some directions determined by the prediction only; the covariance says which
+        2,       ///< a pose, some directions determined by the prediction only; the covariance says which
+    kStale = 3,  ///< nothing new was seen: the last pose, and a covariance that grows
 };
+
+/// Whether a frame's own images say where it is.
+constexpr bool is_tracked(TrackingStatus status) {
+    return status == TrackingStatus::kTracked || status == TrackingStatus::kDegenerate;
+}
 
 /// Where the camera is after one frame. The odom frame is smooth: no loop closure moves it.
 struct OdometryEstimate {
@@ -36,6 +42,16 @@ struct OdometryEstimate {
     /// Zero while it is not known: at the first pose and after lost frames. Not in the message.
     Twist velocity = Twist::Zero();
 };
+
+/// Whether it says where the frame was: tracked, or so short a time after the last new image that two
+/// standard deviations are less than 10 cm and 5 degrees.
+inline bool is_placed(const OdometryEstimate& estimate) {
+    constexpr double kFar_m = 0.05, kFar_rad = 0.0436;
+    if (estimate.status != TrackingStatus::kStale) return is_tracked(estimate.status);
+    const auto variances = estimate.covariance.diagonal();
+    return variances.head<3>().maxCoeff() < kFar_m * kFar_m &&
+           variances.tail<3>().maxCoeff() < kFar_rad * kFar_rad;
+}
 
 /// A 256-bit binary descriptor; compared by Hamming distance.
 using Descriptor = std::array<std::uint8_t, 32>;

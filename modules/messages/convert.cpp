@@ -266,7 +266,7 @@ OdometryEstimate from_message(const odometry_t& message) {
     OdometryEstimate estimate;
     estimate.utime = checked_utime(message.utime, "odometry.utime");
     estimate.pose_utime = checked_utime(message.pose_utime, "odometry.pose_utime");
-    require(message.status >= 0 && message.status <= 2, "odometry.status", "is unknown");
+    require(message.status >= 0 && message.status <= 3, "odometry.status", "is unknown");
     estimate.status = static_cast<TrackingStatus>(message.status);
     estimate.odom_from_camera = from_message(message.odom_from_camera, "odometry.odom_from_camera");
     estimate.keyframe_id = message.keyframe_id;

@@ -8,6 +8,7 @@
 #include "odometry/keyframe_making.hpp"
 #include "odometry/local_keyframes.hpp"
 #include "odometry/method.hpp"
+#include "odometry/news.hpp"
 #include "odometry/prepared_frame.hpp"
 #include "odometry/readout.hpp"
 #include "odometry/relocaliser.hpp"
@@ -29,6 +30,12 @@ class Odometry::State {
   private:
     /// Ids that the process before may have given without having remembered them.
     static constexpr int kIdsLeftOut = 100;
+    /// Frames without new colour after which it is no longer waited for.
+    static constexpr int kPatience = 15;
+    /// A frame without its colour has no points to follow: the next one would be tracked by depth alone.
+    bool may_become_keyframe() const { return old_colors_ == 0 || old_colors_ > kPatience; }
+    OdometryResult track(const OdometryFrame& input);
+    OdometryEstimate stay(std::int64_t utime) const;
     OdometryResult find_again(PreparedFrame& frame);
     OdometryResult restart(PreparedFrame& frame);
     OdometryResult lose(PreparedFrame& frame);
@@ -49,10 +56,52 @@ class Odometry::State {
     LocalKeyframes keyframes_;
     Relocaliser relocaliser_;
     std::unique_ptr<Method> method_;
+    NewsWatch watch_;
+    DepthImage no_depth_;    ///< without a reading, of the colour camera's size
+    int old_colors_ = 0;     ///< frames in a row whose colour was not new
+    OdometryEstimate last_;  ///< of the last frame that was not stale
 };
 
 OdometryResult Odometry::State::process(const OdometryFrame& input) {
     check(input);
+    const News news = watch_.see(input);
+    OdometryResult result;
+    if (news.any() || keyframes_.empty()) {
+        OdometryFrame told = input;
+        if (news.color != News::Image::kNew) told.gray = nullptr;
+        old_colors_ = input.gray != nullptr && told.gray == nullptr ? old_colors_ + 1 : 0;
+        if (news.depth != News::Image::kNew) {
+            no_depth_ = DepthImage(input.depth->width, input.depth->height);
+            told.depth = &no_depth_;
+            told.regions = {};
+        }
+        result = track(told);
+        last_ = result.estimate;
+    } else {
+        result.estimate = stay(input.utime);
+    }
+    result.news = news;
+    result.estimate.utime = result.estimate.pose_utime = input.utime;
+    return result;
+}
+
+/// Where the camera is when nothing new was seen: where it was, as far as it cannot have moved since.
+OdometryEstimate Odometry::State::stay(std::int64_t utime) const {
+    OdometryEstimate estimate = last_;
+    if (estimate.status == TrackingStatus::kLost) return estimate;
+    estimate.status = TrackingStatus::kStale;
+    const double elapsed = motion_.seconds_since_pose(utime);
+    const Guess guess = motion_.stand_still(utime, keyframes_.current().odom_from_keyframe);
+    const Twist moved = elapsed * motion_.velocity();
+    estimate.covariance += guess.information.diagonal().cwiseInverse().asDiagonal();
+    estimate.covariance += moved * moved.transpose();
+    estimate.velocity.setZero();
+    estimate.features = estimate.inliers = 0;
+    estimate.residual_px = 0;
+    return estimate;
+}
+
+OdometryResult Odometry::State::track(const OdometryFrame& input) {
     const bool other_camera = !keyframes_.empty() && !(*input.camera == camera_);
     if (keyframes_.empty() || other_camera) input.camera->validate();
     PreparedFrame frame =
@@ -63,17 +112,10 @@ OdometryResult Odometry::State::process(const OdometryFrame& input) {
         relocaliser_.clear();
         readout_ = {};
     }
-    OdometryResult result;
-    if (resumed_ && !other_camera) {
-        result = find_again(frame);
-    } else if (starts) {
-        result = restart(frame);
-    } else {
-        std::optional<Located> located = method_->locate(frame, {motion_, keyframes_, relocaliser_});
-        result = located ? follow(frame, *located) : lose(frame);
-    }
-    result.estimate.utime = result.estimate.pose_utime = input.utime;
-    return result;
+    if (resumed_ && !other_camera) return find_again(frame);
+    if (starts) return restart(frame);
+    std::optional<Located> located = method_->locate(frame, {motion_, keyframes_, relocaliser_});
+    return located ? follow(frame, *located) : lose(frame);
 }
 
 void Odometry::State::resume(std::span<const Keyframe> keyframes) {
@@ -155,8 +197,8 @@ OdometryResult Odometry::State::follow(PreparedFrame& frame, Located& located) {
     estimate.inliers = located.track.inliers;
     estimate.residual_px = located.track.alignment.residual_px;
     estimate.velocity = -motion_.velocity();  // of the camera in the world, not of the world in its frame
-    if (located.relocalised || has_moved(options_, located) ||
-        method_->wants_keyframe(frame, located, keyframes_.current()))
+    if (may_become_keyframe() && (located.relocalised || has_moved(options_, located) ||
+                                  method_->wants_keyframe(frame, located, keyframes_.current())))
         result.keyframe = change_keyframe(frame, located);
     else
         method_->go_on_from(frame, located.track);

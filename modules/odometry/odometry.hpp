@@ -24,7 +24,22 @@ struct OdometryFrame {
                                             ///< invalid ones are ignored
 };
 
+/// What a frame says that those before it did not.
+struct News {
+    enum class Image {
+        kNone,  ///< there is none
+        kNew,
+        kRepeated,  ///< the last one again: a stream that hangs
+        kLate,      ///< taken further from its depth image than the rate of frames explains
+    };
+    Image color = Image::kNone, depth = Image::kNone;
+
+    bool any() const { return color == Image::kNew || depth == Image::kNew; }
+};
+
 struct OdometryResult {
+    /// Which of the frame's images were used: those that are new.
+    News news;
     /// Of the depth image's moment (pose_utime = utime).
     OdometryEstimate estimate;
     /// Set when the frame became a keyframe. The estimate is still relative to the one before.
@@ -37,6 +52,9 @@ struct OdometryResult {
 /// lost. A lost frame is looked for among the known keyframes; after max_lost_frames a new keyframe begins at
 /// the last pose without an edge (previous_id = -1). Time that goes back (a log that starts again) and
 /// another camera do the same at once.
+///
+/// An image that is not new is left out, and the other one tracks alone. With neither the pose stays, its
+/// covariance grows, and the frame is stale.
 class Odometry {
   public:
     /// Throws std::invalid_argument that names every bad option.

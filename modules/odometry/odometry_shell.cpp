@@ -15,6 +15,13 @@ namespace planemap::odometry {
 
 namespace {
 
+std::string text_of(const OdometryEstimate& estimate) {
+    if (estimate.status == TrackingStatus::kLost) return "lost";
+    if (estimate.status == TrackingStatus::kStale) return "stale: no image is new";
+    return (estimate.status == TrackingStatus::kDegenerate ? "degenerate, " : "tracked, ") +
+           std::to_string(estimate.inliers) + " of " + std::to_string(estimate.features) + " features";
+}
+
 /// Why a lost frame's depth cannot be the help that it should be; nullptr when it can.
 const char* fault_of_depth(const messages::Frame& frame) {
     constexpr double kHardlyAny = 0.01;  // share of an image's pixels
@@ -189,6 +196,12 @@ void OdometryShell::tend_journal() {
     if (const auto news = journal_->news()) status_.remark("journal", *news);
 }
 
+void OdometryShell::count(const News& news) {
+    if (news.color == News::Image::kRepeated) status_.lost(kColorRepeats);
+    if (news.color == News::Image::kLate) status_.lost(kColorLate);
+    if (news.depth == News::Image::kRepeated) status_.lost(kDepthRepeats);
+}
+
 void OdometryShell::process(const Waiting& input) {
     const messages::Frame& frame = *input.frame;
     OdometryFrame in;
@@ -222,19 +235,18 @@ void OdometryShell::process(const Waiting& input) {
     }
     bus_.publish(messages::channels::kOdometry,
                  messages::to_message(result.estimate, odometry_seq_++, bus_.session()));
-    if (result.estimate.status != TrackingStatus::kLost) publish_body(result.estimate, frame.camera());
+    count(result.news);
+    if (is_tracked(result.estimate.status)) publish_body(result.estimate, frame.camera());
     if (const auto& keyframe = result.keyframe) {
         if (!first_keyframe_) first_keyframe_ = {keyframe->id, keyframe->utime, keyframe->odom_from_camera};
         publish(*keyframe);
     }
-    publish_look(result, in.regions);
+    if (result.news.depth == News::Image::kNew) publish_look(result, in.regions);
     status_.published(result.estimate.utime, messages::now_us());
     const bool is_lost = result.estimate.status == TrackingStatus::kLost;
     const char* const fault = is_lost ? fault_of_depth(frame) : nullptr;
     if (fault != nullptr) status_.lost(fault);
-    status_.set_text(is_lost ? "lost"
-                             : "tracked, " + std::to_string(result.estimate.inliers) + " of " +
-                                   std::to_string(result.estimate.features) + " features; " + body_.text());
+    status_.set_text(text_of(result.estimate) + (is_lost ? "" : "; " + body_.text()));
 }
 
 void OdometryShell::on_trajectory(const messages::RawMessage& message) {

@@ -39,6 +39,12 @@ class OdometryShell : public messages::Shell {
     static constexpr const char* kNoReadings = "untracked frames with hardly a depth reading in range";
     static constexpr const char* kBesideColor = "untracked frames whose depth lies beside the colour image";
 
+    /// Reasons for images that were left out, since they say nothing of their moment.
+    static constexpr const char* kColorRepeats = "colour images left out that are the one before again";
+    static constexpr const char* kDepthRepeats = "depth images left out that are the one before again";
+    static constexpr const char* kColorLate =
+        "colour images left out that are of another time than their depth";
+
     messages::ModuleStatus& status() override { return status_; }
     /// Goes on with what has waited for too long.
     int poll() override;
@@ -68,6 +74,7 @@ class OdometryShell : public messages::Shell {
     void process(const Waiting& input);
     void resume();
     void tend_journal();
+    void count(const News& news);
     void publish(const Keyframe& keyframe);
     void publish_look(const OdometryResult& result, std::span<const PlanarRegion> regions);
     void on_status(const messages::RawMessage& message);

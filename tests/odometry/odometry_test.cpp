@@ -33,7 +33,14 @@ Pose sideways(int frame) {
 
 class Room : public ::testing::Test {
   protected:
-    OdometryResult feed(const RenderedFrame& frame, std::int64_t utime) {
+    /// With a sensor's noise: two images of a still view differ.
+    OdometryResult feed(RenderedFrame frame, std::int64_t utime) {
+        std::mt19937 random(static_cast<unsigned>(utime));
+        for (std::uint8_t& luma : frame.gray.pixels)
+            luma = static_cast<std::uint8_t>(luma ^ (luma > 1 ? random() & 1 : 0));
+        return feed_as_it_is(frame, utime);
+    }
+    OdometryResult feed_as_it_is(const RenderedFrame& frame, std::int64_t utime) {
         return odometry_.process({utime, utime, &frame.gray, &frame.depth, &camera_, {}});
     }
     OdometryResult feed_depth(const RenderedFrame& frame, std::int64_t utime) {
@@ -69,6 +76,53 @@ TEST_F(Room, FirstFrameIsKeyframeZeroAtTheIdentity) {
     EXPECT_EQ(result.keyframe->id, 0);
     EXPECT_EQ(result.keyframe->previous_id, -1);
     EXPECT_GT(result.keyframe->features.size(), 50u);
+}
+
+TEST_F(Room, AStreamThatHangsLeavesTheOtherToTrack) {
+    RenderedFrame held = view(0);
+    for (int i = 0; i < 60; ++i) {
+        RenderedFrame frame = view(i);
+        const bool color_hangs = i >= 10 && i < 20, depth_hangs = i >= 30 && i < 40;
+        if (color_hangs) frame.gray = held.gray;
+        if (depth_hangs) frame.depth = held.depth;
+        held = frame;
+        const OdometryResult result = feed_as_it_is(frame, (i + 1) * kPeriod);
+        ASSERT_TRUE(is_tracked(result.estimate.status)) << "frame " << i;
+        EXPECT_EQ(result.news.color == News::Image::kNew, !color_hangs) << "frame " << i;
+        EXPECT_EQ(result.news.depth == News::Image::kNew, !depth_hangs) << "frame " << i;
+        expect_near(result.estimate.odom_from_camera, room_from_camera_at(i), 0.02, 0.01);
+        EXPECT_FALSE(color_hangs && result.keyframe && !result.keyframe->features.empty()) << "frame " << i;
+        EXPECT_FALSE(depth_hangs && result.keyframe) << "frame " << i;
+    }
+}
+
+TEST_F(Room, WithNothingNewThePoseStaysAndGetsUncertain) {
+    for (int i = 0; i < 10; ++i) feed_as_it_is(view(i), (i + 1) * kPeriod);
+    const RenderedFrame held = view(10);
+    const OdometryEstimate last = feed_as_it_is(held, 11 * kPeriod).estimate;
+    double before = last.covariance.trace();
+    for (int i = 11; i < 25; ++i) {
+        const OdometryResult result = feed_as_it_is(held, (i + 1) * kPeriod);
+        EXPECT_EQ(result.estimate.status, TrackingStatus::kStale);
+        EXPECT_EQ(result.estimate.utime, (i + 1) * kPeriod);
+        EXPECT_FALSE(result.keyframe);
+        EXPECT_TRUE(result.estimate.odom_from_camera.isApprox(last.odom_from_camera));
+        EXPECT_GT(result.estimate.covariance.trace(), before) << "frame " << i;
+        before = result.estimate.covariance.trace();
+    }
+    // Honest: the true pose is within three sigma all the time.
+    const Pose off = last.odom_from_camera.inverse() * room_from_camera_at(24);
+    EXPECT_LT(off.translation().norm(), 3 * std::sqrt(before));
+    const OdometryResult again = feed_as_it_is(view(25), 26 * kPeriod);
+    EXPECT_EQ(again.estimate.status, TrackingStatus::kTracked);
+    expect_near(again.estimate.odom_from_camera, room_from_camera_at(25), 0.02, 0.01);
+}
+
+TEST_F(Room, NothingButRepeatsIsOneKeyframe) {
+    const RenderedFrame held = view(0);
+    int keyframes = 0;
+    for (int i = 0; i < 60; ++i) keyframes += feed_as_it_is(held, (i + 1) * kPeriod).keyframe ? 1 : 0;
+    EXPECT_EQ(keyframes, 1);
 }
 
 TEST_F(Room, FollowsAKnownMotion) {

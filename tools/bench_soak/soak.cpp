@@ -99,7 +99,7 @@ class Observer {
     void see(std::size_t frame) {
         ++frames_;
         const OdometryEstimate* estimate = pipeline_.latest();
-        if (estimate == nullptr || estimate->status == TrackingStatus::kLost) {
+        if (estimate == nullptr || !is_tracked(estimate->status)) {
             ++lost_;
             return;
         }

@@ -72,7 +72,7 @@ void RunClock::stop() {
 std::int64_t tracked_frames(const pipeline::Pipeline& pipeline) {
     const auto& estimates = pipeline.estimates();
     return std::count_if(estimates.begin(), estimates.end(),
-                         [](const auto& e) { return e.status != TrackingStatus::kLost; });
+                         [](const auto& e) { return is_tracked(e.status); });
 }
 
 namespace {
@@ -132,7 +132,13 @@ Json report_of(const std::string& input_name, const Input& input, pipeline::Pipe
     report["input"] = input_name;
     report["frames"] = input.frames();
     report["tracked"] = tracked;
-    report["lost"] = static_cast<std::int64_t>(estimates.size()) - tracked;
+    const auto with_status = [&](TrackingStatus status) {
+        return std::count_if(estimates.begin(), estimates.end(),
+                             [&](const auto& e) { return e.status == status; });
+    };
+    report["lost"] = with_status(TrackingStatus::kLost);
+    report["stale"] = with_status(TrackingStatus::kStale);
+    report["degenerate"] = with_status(TrackingStatus::kDegenerate);
     report["broken"] = input.frames() - static_cast<std::int64_t>(estimates.size());
     report["interrupted"] = !input.is_at_end();
     report["keyframes"] = keyframes.keyframes.size();

@@ -20,7 +20,8 @@ void Progress::show(const Input& input, pipeline::Pipeline& pipeline) {
     const double since = std::chrono::duration<double>(now - last_).count();
     const double rate = static_cast<double>(input.frames() - last_frames_) / since;
     const OdometryEstimate* latest = pipeline.latest();
-    const bool lost = latest == nullptr || latest->status == TrackingStatus::kLost;
+    const bool tracked = latest != nullptr && is_tracked(latest->status);
+    const bool stale = latest != nullptr && latest->status == TrackingStatus::kStale;
     const std::string share =
         input.progress() ? std::to_string(static_cast<int>(100 * *input.progress())) + " %, " : "";
     char text[160];
@@ -28,7 +29,7 @@ void Progress::show(const Input& input, pipeline::Pipeline& pipeline) {
                   static_cast<long long>(input.frames()), share.c_str(), rate,
                   time_left(input.progress(), std::chrono::duration<double>(now - start_).count()).c_str(),
                   pipeline.map().mapper().map().planes.size(), pipeline.keyframes().keyframes.size(),
-                  lost ? "lost" : "tracked");
+                  tracked ? "tracked" : (stale ? "stale" : "lost"));
     line_.show(text);
     last_ = now;
     last_frames_ = input.frames();

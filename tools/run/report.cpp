@@ -52,9 +52,13 @@ void add_origin(const Json& report, std::string& out) {
 
 void add_tracking(const Json& report, std::string& out) {
     const auto count = [&](const char* key) { return number(report, key); };
-    out += count("frames") + " frames: " + count("tracked") + " tracked, " + count("lost") + " lost, " +
-           count("broken") + " broken. " + count("keyframes") + " keyframes, " + count("loop_closures") +
-           " loop closures, " + count("planes") + " planes.\n\n";
+    const auto some = [&](const char* key, const char* before, const char* after) {
+        return report.value(key, 0) > 0 ? before + count(key) + after : std::string();
+    };
+    out += count("frames") + " frames: " + count("tracked") + " tracked" +
+           some("degenerate", " (", " of them degenerate)") + ", " + count("lost") + " lost, " +
+           some("stale", "", " stale, ") + count("broken") + " broken. " + count("keyframes") +
+           " keyframes, " + count("loop_closures") + " loop closures, " + count("planes") + " planes.\n\n";
     if (report.contains("up")) {
         const Json& up = report.at("up");
         const std::string why = up.at("why").get<std::string>();

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "odometry/odometry_shell.hpp"
 #include "run/report_text.hpp"
 #include "run/worth.hpp"
 
@@ -43,6 +44,16 @@ std::string bent_depth(const Json& report) {
            ": planemap-calibrate learns how, and --camera with its file corrects it";
 }
 
+/// A line for each kind of image that was left out, since it says nothing of its moment.
+std::vector<std::string> old_images(const Json& report) {
+    std::vector<std::string> lines;
+    const Json losses = report.value("losses", Json::object()).value("odometry", Json::object());
+    using Shell = odometry::OdometryShell;
+    for (const char* reason : {Shell::kColorRepeats, Shell::kColorLate, Shell::kDepthRepeats})
+        if (losses.contains(reason)) lines.push_back(losses.at(reason).dump() + " " + reason);
+    return lines;
+}
+
 }  // namespace
 
 std::vector<std::string> warnings_of(const std::vector<OdometryEstimate>& estimates, bool poses_given,
@@ -62,6 +73,7 @@ std::vector<std::string> warnings_of(const std::vector<OdometryEstimate>& estima
                    "camera moved far between two",
                    kSlowStep_s));
     }
+    for (std::string& line : old_images(report)) warnings.push_back(std::move(line));
     const std::string bent = bent_depth(report);
     if (!bent.empty()) warnings.push_back(bent);
     if (!report.contains("accuracy")) return warnings;

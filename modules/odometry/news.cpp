@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "odometry/news.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <vector>
+
+namespace planemap::odometry {
+namespace {
+
+constexpr std::size_t kSteps = 9;
+constexpr double kMostPeriods = 1.5;  // beside its depth: the one before or after would have been nearer
+constexpr std::int64_t kMostBeside_us = 100000;  // the same where frames were left out, or of the first one
+constexpr std::size_t kOneIn = 200;              // pixels may differ
+constexpr std::size_t kEnoughReadings = 100;     // for two depth images to be the same
+constexpr int kContrast = 3;  // grey levels; without any, two images are alike that nobody repeated
+
+/// Whether an image shows anything.
+bool has_contrast(const GrayImage& image) {
+    const int first = image.pixels.front();
+    std::size_t apart = 0;
+    for (const std::uint8_t pixel : image.pixels) {
+        apart += std::abs(pixel - first) >= kContrast ? 1 : 0;
+        if (apart > image.pixels.size() / kOneIn) return true;
+    }
+    return false;
+}
+
+}  // namespace
+
+bool is_repeated(const GrayImage& image, const GrayImage& last) {
+    if (image.width != last.width || image.height != last.height || image.empty()) return false;
+    const std::size_t most = image.pixels.size() / kOneIn;
+    std::size_t differ = 0;
+    // Images that differ do so within the first rows: that is all they cost.
+    for (std::size_t i = 0; i < image.pixels.size() && differ <= most; ++i)
+        differ += image.pixels[i] != last.pixels[i] ? 1 : 0;
+    return differ <= most && has_contrast(image);
+}
+
+bool is_repeated(const DepthImage& image, const DepthImage& last) {
+    if (image.width != last.width || image.height != last.height || image.empty()) return false;
+    const std::size_t most = image.pixels.size() / kOneIn;
+    std::size_t differ = 0, readings = 0;
+    for (std::size_t i = 0; i < image.pixels.size() && differ <= most; ++i) {
+        readings += is_valid_depth(image.pixels[i]) || is_valid_depth(last.pixels[i]) ? 1 : 0;
+        differ += image.pixels[i] != last.pixels[i] ? 1 : 0;
+    }
+    return readings >= kEnoughReadings && differ <= std::min(most, readings / kOneIn);
+}
+
+/// Whether the colour image is further from the depth image than the rate of frames explains.
+bool NewsWatch::is_late(const OdometryFrame& frame) const {
+    if (frame.color_utime == 0) return false;
+    std::int64_t most_us = kMostBeside_us;
+    if (!steps_us_.empty()) {
+        std::vector<std::int64_t> steps(steps_us_.begin(), steps_us_.end());
+        const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+        std::nth_element(steps.begin(), middle, steps.end());
+        most_us = std::min(most_us, static_cast<std::int64_t>(kMostPeriods * static_cast<double>(*middle)));
+    }
+    return std::abs(frame.color_utime - frame.utime) > most_us;
+}
+
+News NewsWatch::see(const OdometryFrame& frame) {
+    if (utime_ && frame.utime <= *utime_) *this = {};  // another run: its images are nobody's repetition
+    News news;
+    if (frame.gray != nullptr) {
+        if (is_repeated(*frame.gray, gray_) || (frame.color_utime != 0 && frame.color_utime == color_utime_))
+            news.color = News::Image::kRepeated;
+        else if (is_late(frame))
+            news.color = News::Image::kLate;
+        else
+            news.color = News::Image::kNew;
+        if (news.color != News::Image::kRepeated) {
+            gray_ = *frame.gray;
+            color_utime_ = frame.color_utime;
+        }
+    }
+    news.depth = is_repeated(*frame.depth, depth_) ? News::Image::kRepeated : News::Image::kNew;
+    if (news.depth == News::Image::kNew) depth_ = *frame.depth;
+    if (utime_) {
+        steps_us_.push_back(frame.utime - *utime_);
+        if (steps_us_.size() > kSteps) steps_us_.pop_front();
+    }
+    utime_ = frame.utime;
+    return news;
+}
+
+}  // namespace planemap::odometry
