@@ -30,7 +30,7 @@ struct Face {
 };
 
 inline TruePlane true_plane(const Face& face) {
-    return {face.name, face.plane(), face.world_from_face(), rasterised(face.outline())};
+    return {face.name, face.plane(), face.world_from_face(), rasterised(face.outline()), {}};
 }
 
 inline MapPlane map_plane(int id, const Face& face) {
