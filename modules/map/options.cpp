@@ -54,7 +54,7 @@ OptionList options_of(MapOptions& options) {
     list.add("max_extent_m", options.max_extent_m, {1, 1000}, "A plane does not grow longer than this",
              kExpert);
     list.add("infer_hidden", options.infer_hidden,
-             "Infer where floors, ceilings and walls go on behind what stands before them");
+             "Infer where floors, ceilings and walls go on behind what stands before them", kExpert);
     list.add("fold_after", options.fold_after, {0, 1e9},
              "Keyframes older than so many newer ones are taken not to move any more: their regions are "
              "folded into the planes; 0: never");

@@ -350,6 +350,11 @@ void write_odd_folder(const std::filesystem::path& folder) {
     }
     std::string depths = "\xef\xbb\xbf# depth\r\n", colors;
     for (int i = 0; i < 8; ++i) {
+        // Two images of a still scene differ: a repeated one would say nothing new.
+        for (std::uint16_t& reading : depth.pixels)
+            reading = static_cast<std::uint16_t>(reading ^ (random++ * 2654435761u >> 31));
+        for (Rgb& pixel : color.pixels)
+            pixel.g = static_cast<std::uint8_t>(pixel.g ^ (random++ * 2654435761u >> 29));
         const std::string n = std::to_string(i), ns = std::to_string(1403636579763555584 + i * 100000000LL);
         if (i != 3) sensor::write_depth_png(folder / "my scan" / ("depth " + n + ".png"), depth);
         sensor::write_color_png(folder / "my scan" / ("rgb " + n + ".png"), color);

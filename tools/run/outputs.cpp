@@ -71,8 +71,7 @@ void RunClock::stop() {
 
 std::int64_t tracked_frames(const pipeline::Pipeline& pipeline) {
     const auto& estimates = pipeline.estimates();
-    return std::count_if(estimates.begin(), estimates.end(),
-                         [](const auto& e) { return is_tracked(e.status); });
+    return std::count_if(estimates.begin(), estimates.end(), [](const auto& e) { return is_placed(e); });
 }
 
 namespace {
@@ -136,7 +135,7 @@ Json report_of(const std::string& input_name, const Input& input, pipeline::Pipe
         return std::count_if(estimates.begin(), estimates.end(),
                              [&](const auto& e) { return e.status == status; });
     };
-    report["lost"] = with_status(TrackingStatus::kLost);
+    report["lost"] = static_cast<std::int64_t>(estimates.size()) - tracked;
     report["stale"] = with_status(TrackingStatus::kStale);
     report["degenerate"] = with_status(TrackingStatus::kDegenerate);
     report["broken"] = input.frames() - static_cast<std::int64_t>(estimates.size());
