@@ -55,7 +55,7 @@ void HiddenBlocks::add_to_tiles(const Asked& asked, const Pose& camera_from_rast
                                            (range_.x0 * block_m_ + (x + 0.5) * tile_m) * asked.x +
                                            (range_.y0 * block_m_ + (y + 0.5) * tile_m) * asked.y;
             if (!asked.view->viewpoint->keyframe->sight.may_hold(middle, radius)) continue;
-            tiles_[static_cast<std::size_t>(y * tiles_across_ + x)].push_back(number);
+            tiles_[tile_at(x, y)].push_back(number);
             sees_any = true;
         }
     }
@@ -68,8 +68,8 @@ HiddenBlocks::Place HiddenBlocks::at(int x, int y) {
     Place& place = places_[static_cast<std::size_t>(row) * static_cast<std::size_t>(range_.width()) +
                            static_cast<std::size_t>(column)];
     if (place == Place::kUnasked) {
-        place = ask(block_m_ * Eigen::Vector2d(x + 0.5, y + 0.5),
-                    tiles_[static_cast<std::size_t>(row / kTile * tiles_across_ + column / kTile)]);
+        place =
+            ask(block_m_ * Eigen::Vector2d(x + 0.5, y + 0.5), tiles_[tile_at(column / kTile, row / kTile)]);
     }
     return place;
 }

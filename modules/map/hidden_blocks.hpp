@@ -49,6 +49,10 @@ class HiddenBlocks {
         const OccludingView* view;
         Eigen::Vector3d origin, x, y, normal;
     };
+    std::size_t tile_at(int x, int y) const {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(tiles_across_) +
+               static_cast<std::size_t>(x);
+    }
     void add_to_tiles(const Asked& asked, const Pose& camera_from_raster);
     Place ask(const Eigen::Vector2d& middle, const std::vector<std::uint32_t>& views) const;
 
