@@ -41,7 +41,7 @@ GraphShell::GraphShell(messages::Bus& bus, const GraphOptions& options, Optimisi
 void GraphShell::on_odometry(const messages::RawMessage& message) {
     const OdometryEstimate e = messages::from_message(messages::decode<odometry_t>(message.bytes));
     if (!is_placed(e)) return;
-    frames_.push_back({e.pose_utime, e.status, e.keyframe_id, e.keyframe_from_camera, e.odom_from_camera});
+    frames_.push_back({e.pose_utime, e.keyframe_id, e.keyframe_from_camera, e.odom_from_camera});
     if (frames_.size() <= kMostFrames) return;
     frames_.pop_front();
     status_.lost("oldest frames of trajectory.txt");

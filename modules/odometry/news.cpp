@@ -8,6 +8,7 @@
 namespace planemap::odometry {
 namespace {
 
+constexpr std::size_t kBuffers = 4;  // that a driver fills in turn
 constexpr std::size_t kSteps = 9;
 constexpr double kMostPeriods = 1.5;  // beside its depth: the one before or after would have been nearer
 constexpr std::int64_t kMostBeside_us = 100000;  // the same where frames were left out, or of the first one
@@ -24,6 +25,21 @@ bool has_contrast(const GrayImage& image) {
         if (apart > image.pixels.size() / kOneIn) return true;
     }
     return false;
+}
+
+template <typename Image>
+bool repeats_any(const Image& image, const std::deque<Image>& last) {
+    return std::any_of(last.begin(), last.end(), [&](const Image& one) { return is_repeated(image, one); });
+}
+
+template <typename Image>
+void remember(const Image& image, std::deque<Image>& last) {
+    if (last.size() < kBuffers) {
+        last.push_back(image);
+        return;
+    }
+    std::rotate(last.begin(), last.begin() + 1, last.end());
+    last.back() = image;  // in the memory of the oldest one
 }
 
 }  // namespace
@@ -66,19 +82,19 @@ News NewsWatch::see(const OdometryFrame& frame) {
     if (utime_ && frame.utime <= *utime_) *this = {};  // another run: its images are nobody's repetition
     News news;
     if (frame.gray != nullptr) {
-        if (is_repeated(*frame.gray, gray_) || (frame.color_utime != 0 && frame.color_utime == color_utime_))
+        if (repeats_any(*frame.gray, grays_) || (frame.color_utime != 0 && frame.color_utime == color_utime_))
             news.color = News::Image::kRepeated;
         else if (is_late(frame))
             news.color = News::Image::kLate;
         else
             news.color = News::Image::kNew;
         if (news.color != News::Image::kRepeated) {
-            gray_ = *frame.gray;
+            remember(*frame.gray, grays_);
             color_utime_ = frame.color_utime;
         }
     }
-    news.depth = is_repeated(*frame.depth, depth_) ? News::Image::kRepeated : News::Image::kNew;
-    if (news.depth == News::Image::kNew) depth_ = *frame.depth;
+    news.depth = repeats_any(*frame.depth, depths_) ? News::Image::kRepeated : News::Image::kNew;
+    if (news.depth == News::Image::kNew) remember(*frame.depth, depths_);
     if (utime_) {
         steps_us_.push_back(frame.utime - *utime_);
         if (steps_us_.size() > kSteps) steps_us_.pop_front();

@@ -12,7 +12,8 @@
 namespace planemap::odometry {
 
 /// Watches frames for images that are not of their moment. A stream that hangs gives its last buffer again,
-/// under a new stamp or the old one; a camera's own noise makes two images of a still scene differ.
+/// or its last ones in turn, under a new stamp or the old one; a camera's own noise makes two images of a
+/// still scene differ.
 class NewsWatch {
   public:
     /// What a frame says that those before did not. Precondition: check(frame) does not throw.
@@ -21,9 +22,9 @@ class NewsWatch {
   private:
     bool is_late(const OdometryFrame& frame) const;
 
-    GrayImage gray_;                     ///< the last one that was new
-    DepthImage depth_;                   ///< the last one that was new
-    std::int64_t color_utime_ = 0;       ///< of gray_; 0: not known
+    std::deque<GrayImage> grays_;        ///< the last ones that were new, kBuffers at most
+    std::deque<DepthImage> depths_;      ///< the same of depth
+    std::int64_t color_utime_ = 0;       ///< of the newest of grays_; 0: not known
     std::optional<std::int64_t> utime_;  ///< of the last frame
     std::deque<std::int64_t> steps_us_;  ///< between the last frames
 };

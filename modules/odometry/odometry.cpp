@@ -34,7 +34,7 @@ class Odometry::State {
     static constexpr int kPatience = 15;
     /// A frame without its colour has no points to follow: the next one would be tracked by depth alone.
     bool may_become_keyframe() const { return old_colors_ == 0 || old_colors_ > kPatience; }
-    OdometryResult track(const OdometryFrame& input);
+    OdometryResult track(const OdometryFrame& input, const News& news);
     OdometryEstimate stay(std::int64_t utime) const;
     OdometryResult find_again(PreparedFrame& frame);
     OdometryResult restart(PreparedFrame& frame);
@@ -75,8 +75,8 @@ OdometryResult Odometry::State::process(const OdometryFrame& input) {
             told.depth = &no_depth_;
             told.regions = {};
         }
-        result = track(told);
-        last_ = result.estimate;
+        result = track(told, news);
+        if (result.estimate.status != TrackingStatus::kStale) last_ = result.estimate;
     } else {
         result.estimate = stay(input.utime);
     }
@@ -101,7 +101,7 @@ OdometryEstimate Odometry::State::stay(std::int64_t utime) const {
     return estimate;
 }
 
-OdometryResult Odometry::State::track(const OdometryFrame& input) {
+OdometryResult Odometry::State::track(const OdometryFrame& input, const News& news) {
     const bool other_camera = !keyframes_.empty() && !(*input.camera == camera_);
     if (keyframes_.empty() || other_camera) input.camera->validate();
     PreparedFrame frame =
@@ -115,7 +115,14 @@ OdometryResult Odometry::State::track(const OdometryFrame& input) {
     if (resumed_ && !other_camera) return find_again(frame);
     if (starts) return restart(frame);
     std::optional<Located> located = method_->locate(frame, {motion_, keyframes_, relocaliser_});
-    return located ? follow(frame, *located) : lose(frame);
+    if (located) return follow(frame, *located);
+    // What is missing comes with the next image that is new.
+    if (const OdometryEstimate stale = stay(frame.utime); !news.is_whole() && is_placed(stale)) {
+        OdometryResult result;
+        result.estimate = stale;
+        return result;
+    }
+    return lose(frame);
 }
 
 void Odometry::State::resume(std::span<const Keyframe> keyframes) {

@@ -29,12 +29,14 @@ struct News {
     enum class Image {
         kNone,  ///< there is none
         kNew,
-        kRepeated,  ///< the last one again: a stream that hangs
+        kRepeated,  ///< one of the last again: a stream that hangs
         kLate,      ///< taken further from its depth image than the rate of frames explains
     };
     Image color = Image::kNone, depth = Image::kNone;
 
     bool any() const { return color == Image::kNew || depth == Image::kNew; }
+    /// Whether no image had to be left out.
+    bool is_whole() const { return color <= Image::kNew && depth <= Image::kNew; }
 };
 
 struct OdometryResult {

@@ -17,7 +17,7 @@ namespace {
 
 std::string text_of(const OdometryEstimate& estimate) {
     if (estimate.status == TrackingStatus::kLost) return "lost";
-    if (estimate.status == TrackingStatus::kStale) return "stale: no image is new";
+    if (estimate.status == TrackingStatus::kStale) return "stale: nothing new says where it is";
     return (estimate.status == TrackingStatus::kDegenerate ? "degenerate, " : "tracked, ") +
            std::to_string(estimate.inliers) + " of " + std::to_string(estimate.features) + " features";
 }

@@ -40,8 +40,8 @@ class OdometryShell : public messages::Shell {
     static constexpr const char* kBesideColor = "untracked frames whose depth lies beside the colour image";
 
     /// Reasons for images that were left out, since they say nothing of their moment.
-    static constexpr const char* kColorRepeats = "colour images left out that are the one before again";
-    static constexpr const char* kDepthRepeats = "depth images left out that are the one before again";
+    static constexpr const char* kColorRepeats = "colour images left out that are one of the last again";
+    static constexpr const char* kDepthRepeats = "depth images left out that are one of the last again";
     static constexpr const char* kColorLate =
         "colour images left out that are of another time than their depth";
 

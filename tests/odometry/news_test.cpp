@@ -64,6 +64,19 @@ TEST_F(NewsTest, AStreamThatHangsHasNone) {
     EXPECT_FALSE(none.any());
 }
 
+TEST_F(NewsTest, ADriversBuffersInTurnAreNoNews) {
+    std::vector<RenderedFrame> buffers;
+    for (int i = 0; i < 4; ++i) {
+        buffers.push_back(look());
+        EXPECT_EQ(see(buffers.back(), (i + 1) * kPeriod, (i + 1) * kPeriod).color, kNew);
+    }
+    for (int i = 4; i < 20; ++i)
+        EXPECT_FALSE(
+            see(buffers[static_cast<std::size_t>(i) % 4], (i + 1) * kPeriod, (i + 1) * kPeriod).any())
+            << i;
+    EXPECT_EQ(see(look(), 21 * kPeriod, 21 * kPeriod).depth, kNew);
+}
+
 TEST_F(NewsTest, AFewOtherPixelsAreNoNews) {
     RenderedFrame frame = look();
     see(frame, kPeriod, kPeriod);

@@ -120,6 +120,23 @@ TEST_F(Room, WithNothingNewThePoseStaysAndGetsUncertain) {
     expect_near(again.estimate.odom_from_camera, room_from_camera_at(25), 0.02, 0.01);
 }
 
+TEST_F(Room, NewsThatDoNotSayWhereItIsAreWaitedForAsLongAsItCannotBeFar) {
+    for (int i = 0; i < 10; ++i) feed_as_it_is(view(i), (i + 1) * kPeriod);
+    RenderedFrame held = view(10);
+    const OdometryEstimate last = feed_as_it_is(held, 11 * kPeriod).estimate;
+    std::vector<TrackingStatus> statuses;
+    for (int i = 11; i < 60; ++i) {
+        held.depth = DepthImage(held.depth.width, held.depth.height);  // but for a few specks
+        for (std::size_t at = 0; at < held.depth.pixels.size(); at += 4999) held.depth.pixels[at] = 1500;
+        const OdometryResult result = feed_as_it_is(held, (i + 1) * kPeriod);
+        statuses.push_back(result.estimate.status);
+        EXPECT_FALSE(result.keyframe && i < 25);
+        if (i == 11) expect_near(result.estimate.odom_from_camera, last.odom_from_camera, 1e-9, 1e-9);
+    }
+    EXPECT_EQ(statuses.front(), TrackingStatus::kStale);
+    EXPECT_NE(std::find(statuses.begin(), statuses.end(), TrackingStatus::kLost), statuses.end());
+}
+
 TEST_F(Room, NothingButRepeatsIsOneKeyframe) {
     const RenderedFrame held = view(0);
     int keyframes = 0;

@@ -42,8 +42,8 @@ TEST_F(RunTest, WritesEverythingAndTheSameBytesAgain) {
         EXPECT_EQ(read_file(folder_ / "a" / file), read_file(folder_ / "b" / file)) << file;
     }
     const Json r = report("a");
-    for (const char* key : {"input", "frames", "tracked", "lost", "keyframes", "loop_closures", "planes",
-                            "wall_s", "cpu_s", "peak_rss_mb"}) {
+    for (const char* key : {"input", "frames", "tracked", "lost", "stale", "degenerate", "keyframes",
+                            "loop_closures", "planes", "wall_s", "cpu_s", "peak_rss_mb"}) {
         EXPECT_TRUE(r.contains(key)) << key;
     }
     for (const char* stage : {"decode", "segmentation", "odometry", "graph", "map", "octomap"}) {
@@ -475,6 +475,29 @@ TEST_F(RunTest, TheFloorOfFr3CabinetIsOnePlane) {
     EXPECT_EQ(floors, 1);
     EXPECT_LT(floor_angle, 3.0);
     EXPECT_LT(std::abs(floor_height), 0.15) << "at the floor's middle, some metres from the first camera";
+}
+
+TEST_F(RunTest, AColourStreamThatStandsStillDragsNothingAlong) {
+    PLANEMAP_NEEDS_DATA("cases");
+    const std::filesystem::path input = test::data_folder("cases") / "color_frozen";
+    const Result result =
+        run("planemap-run", input.string() + " --no-octomap --quiet --output " + path("out"));
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_NE(result.err.find("7 colour images left out that are one of the last again"), std::string::npos)
+        << result.err;
+    const Trajectory truth = read_trajectory(input / "groundtruth.txt"),
+                     poses = read_trajectory(folder_ / "out/trajectory.txt");
+    for (const StampedPose& pose : poses) {
+        const auto at = std::find_if(truth.begin(), truth.end(),
+                                     [&](const auto& t) { return std::abs(t.utime - pose.utime) < 1000; });
+        ASSERT_NE(at, truth.end());
+        const Pose right = truth.front().world_from_camera.inverse() * at->world_from_camera;
+        const Pose off = right.inverse() * poses.front().world_from_camera.inverse() * pose.world_from_camera;
+        EXPECT_LT(rotation_angle(off), radians(2)) << pose.utime;
+        EXPECT_LT(off.translation().norm(), 0.12)
+            << pose.utime;  // along the wall, of which depth says nothing
+    }
+    EXPECT_EQ(report("out").at("degenerate"), 7) << "and so it is said";
 }
 
 TEST_F(RunTest, LivingroomMicroRunsThrough) {

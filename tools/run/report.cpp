@@ -52,13 +52,16 @@ void add_origin(const Json& report, std::string& out) {
 
 void add_tracking(const Json& report, std::string& out) {
     const auto count = [&](const char* key) { return number(report, key); };
-    const auto some = [&](const char* key, const char* before, const char* after) {
-        return report.value(key, 0) > 0 ? before + count(key) + after : std::string();
-    };
-    out += count("frames") + " frames: " + count("tracked") + " tracked" +
-           some("degenerate", " (", " of them degenerate)") + ", " + count("lost") + " lost, " +
-           some("stale", "", " stale, ") + count("broken") + " broken. " + count("keyframes") +
-           " keyframes, " + count("loop_closures") + " loop closures, " + count("planes") + " planes.\n\n";
+    out += count("frames") + " frames: " + count("tracked") + " tracked, " + count("lost") + " lost, " +
+           count("broken") + " broken. " + count("keyframes") + " keyframes, " + count("loop_closures") +
+           " loop closures, " + count("planes") + " planes.\n\n";
+    if (report.value("degenerate", 0) > 0)
+        out += "In " + count("degenerate") + " frames a direction is known by the prediction alone.\n\n";
+    if (report.value("stale", 0) > 0) {
+        out += "In " + count("stale") +
+               " frames nothing new said where the camera was: they have the pose before them, or none where the camera may have "
+               "gone far.\n\n";
+    }
     if (report.contains("up")) {
         const Json& up = report.at("up");
         const std::string why = up.at("why").get<std::string>();
