@@ -38,6 +38,7 @@ struct OdometryEstimate {
     int features = 0;                        ///< features or terms tried
     int inliers = 0;
     double residual_px = 0;  ///< RMS reprojection error of the inliers
+    int chain = -1;  ///< Keyframe::chain of the keyframe; not in the message
     /// How the camera moves, filtered: of its centre, m/s, and its rotation, rad/s, both in the camera frame.
     /// Zero while it is not known: at the first pose and after lost frames. Not in the message.
     Twist velocity = Twist::Zero();
@@ -70,6 +71,9 @@ struct Keyframe {
     std::int64_t pose_utime = 0;  ///< moment the pose is of, microseconds
     int id = -1;                  ///< 0, 1, 2, ... in order of time
     Pose odom_from_camera = Pose::Identity();
+    /// Id of the first keyframe of its odom frame: poses of one chain can be compared, of two they cannot;
+    /// -1: not known.
+    int chain = -1;
     int previous_id = -1;  ///< keyframe the edge leads from; -1: none (first one, or after a loss)
     Pose previous_from_camera = Pose::Identity();  ///< the edge
     Matrix6d covariance = Matrix6d::Zero();        ///< of the edge: translation, rotation; camera frame
@@ -84,6 +88,9 @@ struct KeyframePose {
     int id = -1;
     std::int64_t utime = 0;  ///< Keyframe::utime
     Pose world_from_camera = Pose::Identity();
+    /// Id of the first keyframe that it hangs together with, by odometry and loop closures. Each component
+    /// has a world frame of its own, and where one lies in another is not known.
+    int component = 0;
 };
 
 /// All keyframe poses after graph optimisation.
@@ -91,7 +98,7 @@ struct KeyframeTrajectory {
     std::int64_t utime = 0;                   ///< of the newest keyframe
     int revision = 0;                         ///< grows when earlier keyframes moved
     int loop_closures = 0;                    ///< accepted so far
-    Pose world_from_odom = Pose::Identity();  ///< correction for frames after the newest keyframe
+    Pose world_from_odom = Pose::Identity();  ///< correction for frames after the newest keyframe: its world
     std::vector<KeyframePose> keyframes;      ///< ascending id
 };
 

@@ -102,6 +102,7 @@ struct InferredRings {
 struct PlaneMap {
     std::int64_t utime = 0;                        ///< of the newest keyframe in it, microseconds
     int revision = 0;                              ///< of the trajectory it was built from
+    int component = 0;                             ///< KeyframePose::component of what it is made of
     Eigen::Vector3f up = Eigen::Vector3f::Zero();  ///< unit, against gravity, world; zero: not known
     std::vector<MapPlane> planes;                  ///< ascending id
     std::vector<IntersectionLine> lines;

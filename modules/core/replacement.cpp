@@ -20,6 +20,7 @@ std::vector<Replacement> replacements(const std::vector<KeyframePose>& before,
         Replacement nearest{keyframe->id, -1, Pose::Identity()};
         double least = std::numeric_limits<double>::infinity();
         for (const KeyframePose* other : stay) {
+            if (other->component != keyframe->component) continue;
             const Pose apart =
                 other->world_from_camera.inverse(Eigen::Isometry) * keyframe->world_from_camera;
             const double distance = apart.translation().norm() + rotation_angle(apart);
@@ -52,12 +53,21 @@ const KeyframePose* KeyframePoses::named(int id) const {
     return found != named_.end() && found->id == id ? &*found : nullptr;
 }
 
-std::optional<Pose> KeyframePoses::pose_of(int id) const {
-    if (const KeyframePose* own = named(id)) return own->world_from_camera;
+const KeyframePose* KeyframePoses::keeper(int id) const {
+    if (const KeyframePose* own = named(id)) return own;
     const auto gone = replaced_.find(id);
-    const KeyframePose* by = gone == replaced_.end() ? nullptr : named(gone->second.by);
+    return gone == replaced_.end() ? nullptr : named(gone->second.by);
+}
+
+std::optional<Pose> KeyframePoses::pose_of(int id) const {
+    const KeyframePose* by = keeper(id);
     if (by == nullptr) return std::nullopt;
-    return by->world_from_camera * gone->second.by_from_id;
+    return by->id == id ? by->world_from_camera : by->world_from_camera * replaced_.at(id).by_from_id;
+}
+
+std::optional<int> KeyframePoses::component_of(int id) const {
+    const KeyframePose* by = keeper(id);
+    return by == nullptr ? std::nullopt : std::optional(by->component);
 }
 
 void KeyframePoses::keep_replaced(const std::function<bool(int id)>& is_wanted) {

@@ -19,7 +19,7 @@ struct Replacement {
 };
 
 /// The keyframes that a trajectory names and the next one does not, each with the nearest of those that both
-/// name (a radian counts as a metre), as they stood in the first. None when they share no keyframe: then the
+/// name and that it hung together with (a radian counts as a metre), as they stood in the first. None when they share no keyframe: then the
 /// second is another graph's, and says nothing about the first.
 std::vector<Replacement> replacements(const std::vector<KeyframePose>& before,
                                       const std::vector<KeyframePose>& now);
@@ -32,11 +32,15 @@ class KeyframePoses {
     /// world_from_camera; nothing for a keyframe that no trajectory named, and when the one that it was fixed
     /// to is gone without a replacement.
     std::optional<Pose> pose_of(int id) const;
+    /// KeyframePose::component, of those that have a pose.
+    std::optional<int> component_of(int id) const;
     /// Forgets the replaced keyframes that nobody asks for any more: what bounds the memory of a long run.
     void keep_replaced(const std::function<bool(int id)>& is_wanted);
 
   private:
     const KeyframePose* named(int id) const;
+    /// The named one that a keyframe is, or is fixed to; nullptr for none.
+    const KeyframePose* keeper(int id) const;
 
     std::vector<KeyframePose> named_;      ///< ascending id
     std::map<int, Replacement> replaced_;  ///< by id; each by one that was named when it was replaced

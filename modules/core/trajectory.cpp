@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "core/components.hpp"
 #include "core/files.hpp"
 
 namespace planemap {
@@ -24,6 +25,17 @@ void write_trajectory(const std::filesystem::path& file, const Trajectory& traje
         text += line;
     }
     write_file(file, text);
+}
+
+void write_trajectories(const std::filesystem::path& folder, const std::vector<Trajectory>& trajectories) {
+    for (std::size_t number = 1; number <= kMostComponentFiles; ++number) {
+        const std::filesystem::path file = folder / component_file("trajectory.txt", number);
+        std::error_code ignored;
+        if (number <= trajectories.size())
+            write_trajectory(file, trajectories[number - 1]);
+        else if (number > 1)
+            std::filesystem::remove(file, ignored);
+    }
 }
 
 std::optional<Pose> pose_at(const Trajectory& trajectory, std::int64_t utime, std::int64_t max_gap_us) {

@@ -23,6 +23,10 @@ Trajectory read_trajectory(const std::filesystem::path& file, std::vector<std::s
 /// never sees half a file). Throws std::runtime_error naming the file.
 void write_trajectory(const std::filesystem::path& file, const Trajectory& trajectory);
 
+/// Writes the trajectories of a run's components into a folder under their names (component_file(), at most
+/// kMostComponentFiles), and removes those that an earlier run had more. Throws as write_trajectory().
+void write_trajectories(const std::filesystem::path& folder, const std::vector<Trajectory>& trajectories);
+
 /// The pose at a time: the trajectory's own, or interpolated between the two around it if they are at most
 /// max_gap_us apart; nothing elsewhere. Sorted input.
 std::optional<Pose> pose_at(const Trajectory& trajectory, std::int64_t utime, std::int64_t max_gap_us);

@@ -41,7 +41,7 @@ class PoseGraph::Impl {
     void apply(const OptimisationTask& task);
     bool adopt(const Surfaces& surfaces);
     void thin_out();
-    void publish() { trajectory_.update(keyframes_, history_.count()); }
+    void publish() { trajectory_.update(keyframes_, topology_.parts(), history_.count()); }
 
     bool expects(int id) const { return keyframes_.empty() || follows(id, keyframes_.back().id); }
     bool is_due() const { return schedule_.is_due(); }
@@ -54,8 +54,10 @@ class PoseGraph::Impl {
   private:
     void start_anew();
     void append(const Keyframe& keyframe);
+    int same_chain(const Keyframe& keyframe) const;
     void append_by_odometry(int from, KeyframeNode node, const Pose& step, const Matrix6d& covariance,
                             const Drift& detour);
+    void append_after_missing(int from, KeyframeNode node, const Matrix6d& covariance);
     void append_after_gap(KeyframeNode node);
     void close_loops();
     void add_loop(int node, const Verification& found);
@@ -97,7 +99,7 @@ void PoseGraph::Impl::start_anew() {
 
 /// Adds the node, places it and ties it to the previous one.
 void PoseGraph::Impl::append(const Keyframe& keyframe) {
-    KeyframeNode node{keyframe.id, keyframe.utime, keyframe.odom_from_camera,
+    KeyframeNode node{keyframe.id, keyframe.utime, keyframe.chain, keyframe.odom_from_camera,
                       make_view(keyframe, options_.max_features)};
     counts_.features_left_out += keyframe.features.size() - node.view.points.size();
     search_.add(node.view);
@@ -113,9 +115,18 @@ void PoseGraph::Impl::append(const Keyframe& keyframe) {
                            successor->drift);
     } else if (keyframes_.empty()) {
         keyframes_.add(std::move(node), keyframe.odom_from_camera, -1);
+    } else if (const int same = same_chain(keyframe); same >= 0) {
+        append_after_missing(same, std::move(node), keyframe.covariance);
     } else {
         append_after_gap(std::move(node));
     }
+}
+
+/// The newest node of the odom frame that a keyframe's edge leads from, -1 for none: it begins one, or that
+/// is not known. Messages without a chain are of times in which every edge led on in one.
+int PoseGraph::Impl::same_chain(const Keyframe& keyframe) const {
+    if (keyframe.previous_id < 0) return -1;
+    return keyframe.chain < 0 ? keyframes_.newest() : keyframes_.newest_of_chain(keyframe.chain);
 }
 
 /// `step` leads from the node; `detour` is how far it may be off besides.
@@ -125,12 +136,25 @@ void PoseGraph::Impl::append_by_odometry(int from, KeyframeNode node, const Pose
     keyframes_.add(std::move(node), orthonormalised(keyframes_.pose(from) * step), from);
 }
 
-/// After a loss: placed by odom_from_camera; how far the camera went meanwhile is bounded by its speed.
+/// Keyframes in between never arrived: odometry itself was not lost, so the odom frame is one. `covariance` is
+/// of its last step; of those that are missing each counts as much.
+void PoseGraph::Impl::append_after_missing(int from, KeyframeNode node, const Matrix6d& covariance) {
+    const KeyframeNode& before = keyframes_[from];
+    const Pose step =
+        orthonormalised(before.odom_from_camera.inverse(Eigen::Isometry) * node.odom_from_camera);
+    const double steps = node.id - before.id;
+    append_by_odometry(from, std::move(node), step, covariance * steps, {0, 0});
+}
+
+/// After a loss a component of its own begins. How far the camera went meanwhile is bounded by its speed;
+/// where time went back, by nothing.
 void PoseGraph::Impl::append_after_gap(KeyframeNode node) {
+    constexpr double kAnyTime_s = 3600;
     const int last = keyframes_.newest();
     const KeyframeNode& before = keyframes_.back();
-    const double seconds = std::clamp(
-        static_cast<double>(node.utime) * 1e-6 - static_cast<double>(before.utime) * 1e-6, 0.0, 3600.0);
+    const double passed_s =
+        static_cast<double>(node.utime) * 1e-6 - static_cast<double>(before.utime) * 1e-6;
+    const double seconds = passed_s > 0 ? std::min(passed_s, kAnyTime_s) : kAnyTime_s;
     topology_.add_gap(gap_tie(options_, last, last + 1,
                               before.odom_from_camera.inverse(Eigen::Isometry) * node.odom_from_camera,
                               seconds));
@@ -161,14 +185,14 @@ void PoseGraph::Impl::add_loop(int node, const Verification& found) {
         loop_tie(options_, node, keyframes_.newest(), found.a_from_b, found.covariance, number));
 }
 
-/// When a loop closure is the first tie between two parts of the graph, the part without the first keyframe
-/// is moved as a whole to where the closure says.
+/// When a loop closure is the first tie between two components, the younger one is moved as a whole to where
+/// the closure says.
 void PoseGraph::Impl::carry_part(int node, const Pose& node_from_newest) {
     UnionFind<int> parts = topology_.parts();
     const int newest = keyframes_.newest();
     const int part = parts.find(node), newest_part = parts.find(newest);
     if (part == newest_part) return;
-    const bool carry_newest = newest_part != parts.find(0);
+    const bool carry_newest = newest_part > part;
     const Pose correction =
         keyframes_.pose(node) * node_from_newest * keyframes_.pose(newest).inverse(Eigen::Isometry);
     std::vector<bool> moving;
@@ -177,13 +201,13 @@ void PoseGraph::Impl::carry_part(int node, const Pose& node_from_newest) {
     schedule_.part_moved();
 }
 
-/// Notes which landmarks the newest keyframe sees, and returns how far they disagree (standard deviations); 0
-/// while it is not tied to the first keyframe, since its pose says nothing then.
+/// Notes which landmarks the newest keyframe sees, and returns how far they disagree (standard deviations). In
+/// a component without the first keyframe poses say nothing of which they are: the map does.
 double PoseGraph::Impl::sight(const Keyframe& keyframe) {
     UnionFind<int> parts = topology_.parts();
     const int newest = keyframes_.newest();
-    if (parts.find(newest) != parts.find(0)) return 0;
-    return landmarks_.add(newest, keyframe.regions, keyframes_.pose(newest), keyframe.noise);
+    return landmarks_.add(newest, keyframe.regions, keyframes_.pose(newest), keyframe.noise,
+                          parts.find(newest) == parts.find(0));
 }
 
 /// With all that is known, from where the poses are.
@@ -248,10 +272,10 @@ void PoseGraph::Impl::thin_out() {
 }
 
 /// Removes a node and hands what it knows to the nearest one that it is tied to; nothing where there is none.
-/// Not the first keyframe, which is the world's; nor one with a loop closure that the poses do not follow
+/// Not the first keyframe of a component, which is the world's; nor one with a loop closure that the poses do not follow
 /// yet.
 void PoseGraph::Impl::let_go(int node) {
-    if (node == 0 || topology_.has_unapplied_loop(node)) return;
+    if (topology_.parts().stands(node) || topology_.has_unapplied_loop(node)) return;
     const std::optional<Tie> to_keeper = topology_.nearest_trusted(node, keyframes_.poses());
     if (!to_keeper) return;
     const int keeper = to_keeper->other(node), id = keyframes_[node].id;

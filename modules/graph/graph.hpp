@@ -40,8 +40,10 @@ class GraphOptimisation {
     std::unique_ptr<OptimisationTask> task_;
 };
 
-/// Keyframes, the edges between them, and the poses that fit all edges best. World is the odom frame of the
-/// first keyframe, and the first keyframe never moves. The same keyframes in the same order give the same
+/// Keyframes, the edges between them, and the poses that fit all edges best. What odometry and loop closures
+/// tie together is a component, with a world frame of its own: the odom frame of its first keyframe, which
+/// never moves. After a loss, a restart, or a stamp that goes back a component begins; when a loop closure
+/// ties two, the younger one becomes part of the older. The same keyframes in the same order give the same
 /// result.
 ///
 /// Memory grows with the places seen, not with time: where a camera comes again and again, a keyframe that
@@ -61,8 +63,8 @@ class PoseGraph {
     /// naming the field, and leaves the graph as it was, for a keyframe whose id does not follow the last
     /// one's (see expects()), or with values that are not finite, poses that are not rigid, regions that are
     /// not valid. A covariance that is not usable counts as large. An edge from a keyframe that never arrived
-    /// counts as none: like after a loss, the keyframe is placed by odom_from_camera until a loop closure
-    /// ties it to the others.
+    /// becomes one from the newest of the same odom frame, by odom_from_camera of both, and counts as none
+    /// where there is no such.
     const KeyframeTrajectory& add(const Keyframe& keyframe);
 
     /// add() in steps, for a process that must not wait: insert() does all but optimise, and due() says

@@ -47,19 +47,24 @@ void GraphShell::on_odometry(const messages::RawMessage& message) {
     status_.lost("oldest frames of trajectory.txt");
 }
 
-/// As planemap-run leaves it.
-void GraphShell::write_trajectory() {
+/// As planemap-run leaves them.
+void GraphShell::write_trajectories() {
     const KeyframeTrajectory& graph = graph_.trajectory();
     poses_.update(graph.keyframes);
-    Trajectory trajectory = place_frames(frames_, poses_, graph.world_from_odom);
-    Trajectory before;  // of what came before this process there are the keyframes
-    for (const KeyframePose& keyframe : graph.keyframes)
-        if (trajectory.empty() || keyframe.utime < trajectory.front().utime)
-            before.push_back({keyframe.utime, keyframe.world_from_camera});
-    trajectory.insert(trajectory.begin(), before.begin(), before.end());
-    if (trajectory.empty()) return;
+    std::vector<Trajectory> written;
+    for (ComponentTrajectory& part : place_frames(frames_, poses_, graph)) {
+        Trajectory& trajectory = part.trajectory;
+        Trajectory before;  // of what came before this process there are the keyframes
+        for (const KeyframePose& keyframe : graph.keyframes)
+            if (keyframe.component == part.component &&
+                (trajectory.empty() || keyframe.utime < trajectory.front().utime))
+                before.push_back({keyframe.utime, keyframe.world_from_camera});
+        trajectory.insert(trajectory.begin(), before.begin(), before.end());
+        if (!trajectory.empty()) written.push_back(std::move(trajectory));
+    }
+    if (written.empty()) return;
     std::filesystem::create_directories(output_);
-    planemap::write_trajectory(output_ / "trajectory.txt", trajectory);
+    planemap::write_trajectories(output_, written);
 }
 
 void GraphShell::on_keyframe(const messages::RawMessage& message) {
@@ -225,7 +230,7 @@ void GraphShell::finish() {
         has_new_surfaces_ = false;
     }
     publish();
-    if (!output_.empty()) write_trajectory();
+    if (!output_.empty()) write_trajectories();
 }
 
 /// What the graph did without since it was last told.

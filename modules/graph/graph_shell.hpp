@@ -26,7 +26,7 @@ enum class Optimising {
 
 /// Where a graph is kept; empty: nowhere.
 struct GraphFiles {
-    std::filesystem::path output;   ///< folder that trajectory.txt is written to at the end
+    std::filesystem::path output;   ///< folder that trajectory.txt, and trajectory_2.txt ... of further components, go to
     std::filesystem::path journal;  ///< keyframes, for a process that is started again
 };
 
@@ -61,7 +61,7 @@ class GraphShell : public messages::Shell {
     void adopt(const Surfaces& surfaces);
     void apply_finished();
     void on_odometry(const messages::RawMessage& message);
-    void write_trajectory();
+    void write_trajectories();
     void refuse(int id);
     void start_if_due();
     void publish();

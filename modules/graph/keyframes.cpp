@@ -12,6 +12,12 @@ int Keyframes::node_of(int id) const {
     return found != nodes_.end() && found->id == id ? static_cast<int>(found - nodes_.begin()) : -1;
 }
 
+int Keyframes::newest_of_chain(int chain) const {
+    for (int node = newest(); node >= 0; --node)
+        if (nodes_[at(node)].chain == chain) return node;
+    return -1;
+}
+
 void Keyframes::add(KeyframeNode node, const Pose& world_from_camera, int hangs_on) {
     nodes_.push_back(std::move(node));
     poses_.push_back(world_from_camera);

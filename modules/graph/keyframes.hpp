@@ -14,6 +14,7 @@ namespace planemap::graph {
 struct KeyframeNode {
     int id = -1;
     std::int64_t utime = 0;
+    int chain = -1;  ///< Keyframe::chain
     Pose odom_from_camera = Pose::Identity();
     KeyframeView view;
 };
@@ -36,6 +37,8 @@ class Keyframes {
     Pose between(int a, int b) const { return pose(a).inverse(Eigen::Isometry) * pose(b); }
     /// The number of a keyframe, -1 if there is none of this id.
     int node_of(int id) const;
+    /// The newest of a chain of odometry, -1 if there is none.
+    int newest_of_chain(int chain) const;
 
     /// Adds the newest. It hangs on the node by which it was placed (-1: none): until an optimisation knows
     /// it, it follows that one. Precondition: a higher id than all others.

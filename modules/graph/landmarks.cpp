@@ -93,7 +93,7 @@ bool Landmarks::fits(const Candidate& region, const Landmark& landmark) const {
 }
 
 double Landmarks::add(int node, const std::vector<PlanarRegion>& regions, const Pose& world_from_camera,
-                      const DepthNoise& noise) {
+                      const DepthNoise& noise, bool is_placed) {
     double worst = 0;
     for (std::size_t r = 0; r < regions.size(); ++r) {
         const PlanarRegion& region = regions[r];
@@ -118,7 +118,7 @@ double Landmarks::add(int node, const std::vector<PlanarRegion>& regions, const 
             ++fitting;
             sighting.landmark = static_cast<int>(i);
         }
-        if (fitting > 1) {
+        if (fitting > 1 || !is_placed) {
             sighting.landmark = -1;
             sightings_.push_back(sighting);
             continue;

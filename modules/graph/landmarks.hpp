@@ -50,9 +50,10 @@ class Landmarks {
 
     /// Takes the regions of a keyframe (camera frame), seen by a sensor of that noise, at its present pose:
     /// each large one is a sighting of the landmark that it lies on, or founds one. A region that lies on
-    /// several is left out. Returns the largest whitened error of the new sightings.
+    /// several is left out, and so are all while the pose says nothing of which landmarks they are
+    /// (`is_placed`): adopt() may take them in. Returns the largest whitened error of the new sightings.
     double add(int node, const std::vector<PlanarRegion>& regions, const Pose& world_from_camera,
-               const DepthNoise& noise);
+               const DepthNoise& noise, bool is_placed = true);
 
     /// Takes the planes of landmarks that an optimisation moved. Landmarks that it did not know yet move with
     /// the node that founded them: world_moves is how the world moved about each node.

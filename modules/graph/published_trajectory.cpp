@@ -3,7 +3,7 @@
 
 namespace planemap::graph {
 
-void PublishedTrajectory::update(const Keyframes& keyframes, int loop_closures) {
+void PublishedTrajectory::update(const Keyframes& keyframes, UnionFind<int> parts, int loop_closures) {
     const std::vector<Pose>& poses = keyframes.poses();
     if (has_moved(poses)) {
         ++trajectory_.revision;
@@ -17,8 +17,9 @@ void PublishedTrajectory::update(const Keyframes& keyframes, int loop_closures) 
         orthonormalised(poses.back() * keyframes.back().odom_from_camera.inverse(Eigen::Isometry));
     trajectory_.keyframes.resize(poses.size());
     for (std::size_t i = 0; i < poses.size(); ++i) {
-        const KeyframeNode& node = keyframes[static_cast<int>(i)];
-        trajectory_.keyframes[i] = {node.id, node.utime, poses[i]};
+        const int number = static_cast<int>(i);
+        trajectory_.keyframes[i] = {keyframes[number].id, keyframes[number].utime, poses[i],
+                                    keyframes[parts.find(number)].id};
     }
 }
 

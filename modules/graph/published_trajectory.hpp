@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "core/geometry/union_find.hpp"
 #include "core/trajectory.hpp"
 #include "graph/keyframes.hpp"
 #include "graph/options.hpp"
@@ -18,9 +19,9 @@ class PublishedTrajectory {
 
     const KeyframeTrajectory& get() const { return trajectory_; }
 
-    /// Brings it up to date with keyframes that moved, or of which one was added since. Precondition: at
-    /// least one.
-    void update(const Keyframes& keyframes, int loop_closures);
+    /// Brings it up to date with keyframes that moved, or of which one was added since. `parts` says which
+    /// hang together. Precondition: at least one.
+    void update(const Keyframes& keyframes, UnionFind<int> parts, int loop_closures);
     /// A keyframe goes.
     void remove(int node);
 

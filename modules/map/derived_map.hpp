@@ -33,6 +33,7 @@ class DerivedMap {
     /// Gives the planes that are in an earlier map its labels.
     void take_labels(const PlaneMap& earlier);
     void set_revision(int revision) { map_.revision = revision; }
+    void set_component(int component) { map_.component = component; }
     /// The newest keyframe in the map may be this one.
     void seen_at(std::int64_t utime);
 

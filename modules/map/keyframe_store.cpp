@@ -18,8 +18,6 @@ constexpr double kMaxRegionReach_m = 25;
 constexpr std::size_t kMaxRegions = 256;
 constexpr std::size_t kMaxRingVertices = 32767;
 constexpr double kMaxPoints = 1e9;
-/// Keyframes between two that arrive.
-constexpr std::int64_t kMostMissed = 10000;
 
 bool is_near(const Pose& world_from_camera) {
     return is_valid(world_from_camera) && is_near_origin(world_from_camera.translation());
@@ -87,7 +85,7 @@ KeyframeStore::Arrival KeyframeStore::add(const Keyframe& keyframe, MapLosses& l
         ++losses.keyframes_too_late;
         return Arrival::kRefused;
     }
-    if (newest_id_ >= 0 && keyframe.id - std::int64_t{newest_id_} > kMostMissed) {
+    if (is_far_ahead(keyframe.id, newest_id_)) {
         ++losses.keyframes_far_ahead;
         return Arrival::kRefused;
     }
@@ -262,6 +260,14 @@ std::size_t KeyframeStore::drop_waiting(std::size_t most) {
                                       [](const auto& entry) { return !is_in_map(entry.second); }));
     }
     return dropped;
+}
+
+void KeyframeStore::absorb(KeyframeStore&& other) {
+    keyframes_.merge(other.keyframes_);
+    poses_.merge(other.poses_);
+    redirections_.merge(other.redirections_);
+    named_.insert(named_.end(), other.named_.begin(), other.named_.end());
+    newest_id_ = std::max(newest_id_, other.newest_id_);
 }
 
 void KeyframeStore::retire_oldest() {

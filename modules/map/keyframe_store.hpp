@@ -13,6 +13,12 @@
 
 namespace planemap::map {
 
+/// Whether no keyframe of this id can be: more than 10,000 would lie between it and the newest (-1: none yet).
+constexpr bool is_far_ahead(int id, int newest_id) {
+    constexpr std::int64_t kMostMissed = 10000;
+    return newest_id >= 0 && id - std::int64_t{newest_id} > kMostMissed;
+}
+
 /// The keyframes that the map is made of, and all poses that are known, whichever comes first. A keyframe is
 /// in the map once it has StoredKeyframe::world_from_camera; until then it waits for its pose.
 class KeyframeStore {
@@ -36,6 +42,8 @@ class KeyframeStore {
         int keyframe_id = -1;  ///< of the keyframe that it is from near of
     };
     Looked add(const Look& look, MapLosses& losses);
+    /// Whether the look's keyframe is in the store, or one that took its place.
+    bool knows(const Look& look) { return anchor_of(look).keyframe != nullptr; }
     /// Takes the pose of one keyframe; one that is none, or too far out, is ignored.
     void set_pose(int id, const Pose& world_from_camera);
 
@@ -68,6 +76,10 @@ class KeyframeStore {
     std::size_t waiting() const;
     /// Lets the oldest waiting ones go until at most `most` wait; returns how many went.
     std::size_t drop_waiting(std::size_t most);
+
+    /// Takes all that another store has: keyframes, where they were and are, and what is known of those that
+    /// went. Precondition: no id is in both.
+    void absorb(KeyframeStore&& other);
 
     /// Lets the oldest keyframe go for good: it and those before it are refused from now on.
     void retire_oldest();

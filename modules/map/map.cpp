@@ -42,11 +42,12 @@ AdjacencyRules adjacency_rules(const MapOptions& options) {
 
 }  // namespace
 
-PlaneMapper::PlaneMapper(const MapOptions& options)
+PlaneMapper::PlaneMapper(const MapOptions& options, PlaneIds ids, std::shared_ptr<ToldUp> told)
     : options_(validated(options)),
       keyframes_(options.max_extent_m),
-      planes_(options),
-      derived_(derivation_rules(options), adjacency_rules(options), inference_rules(options)) {}
+      planes_(options, std::move(ids)),
+      derived_(derivation_rules(options), adjacency_rules(options), inference_rules(options)),
+      told_(std::move(told)) {}
 
 void PlaneMapper::start_from(const PlaneMap& map) {
     StartingPlanes start = starting_planes(map, options_.max_extent_m, options_.outline_cell_m);
@@ -62,7 +63,7 @@ void PlaneMapper::start_from(const PlaneMap& map) {
 
 void PlaneMapper::add(const Keyframe& keyframe) {
     if (keyframes_.add(keyframe, losses_) == KeyframeStore::Arrival::kRefused) return;
-    told_.came(keyframe.id, keyframe.utime);
+    told_->came(keyframe.id, keyframe.utime);
     place(keyframe.id);
     losses_.keyframes_unplaced += keyframes_.drop_waiting(kMaxWaiting);
     refresh();
@@ -94,14 +95,26 @@ void PlaneMapper::update(const KeyframeTrajectory& trajectory) {
         keyframes_.update(trajectory.keyframes, {options_.moved_m, radians(options_.moved_deg)}, losses_);
     settled_ = settled_ && !motion.any;
     derived_.set_revision(trajectory.revision);
-    if (motion.of_note) {
+    if (!trajectory.keyframes.empty()) derived_.set_component(trajectory.keyframes.front().component);
+    const bool is_anew = motion.of_note || std::exchange(absorbed_, false);
+    if (is_anew) {
         rebuild();
     } else {
         for (const KeyframePose& named : trajectory.keyframes)
             if (keyframes_.is_waiting(named.id)) place(named.id);
     }
     refresh();
-    if (motion.of_note) infer();
+    if (is_anew) infer();
+}
+
+void PlaneMapper::absorb(PlaneMapper&& other) {
+    keyframes_.absorb(std::move(other.keyframes_));
+    losses_ += other.losses_;
+    folded_ += other.folded_;
+    replaced_ += other.replaced_;
+    rebuilds_ += other.rebuilds_;
+    settled_ = false;
+    absorbed_ = true;
 }
 
 void PlaneMapper::restore_ids(const Surfaces& surfaces) {

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -37,8 +38,10 @@ namespace planemap::map {
 /// that is derived from them DerivedMap. This class says when they do what.
 class PlaneMapper {
   public:
-    /// Throws std::invalid_argument for bad options.
-    explicit PlaneMapper(const MapOptions& options = {});
+    /// Throws std::invalid_argument for bad options. Mappers that may become one (absorb()) are given the same
+    /// `ids` and `told`.
+    explicit PlaneMapper(const MapOptions& options = {}, PlaneIds ids = {},
+                         std::shared_ptr<ToldUp> told = std::make_shared<ToldUp>());
 
     /// Starts from a finished map, in its world frame: its planes keep their ids and grow on. Call it first.
     /// Planes that are larger than max_extent_m, or further out than 100 km, count in rejected(). The shapes
@@ -57,6 +60,8 @@ class PlaneMapper {
     /// Takes a look: what it saw, and saw past, is evidence of a time after its keyframe. One whose keyframe
     /// did not come is counted and ignored. Returns whether the map changed by it.
     bool add(const Look& look);
+    /// Whether the look's keyframe is one of its own, or went over to one.
+    bool knows(const Look& look) { return keyframes_.knows(look); }
 
     /// Takes new poses: waiting keyframes named in it enter the map, and if earlier ones moved, the map is
     /// rebuilt. Invalid poses are ignored. Keyframes that no trajectory named keep their pose. One that the
@@ -64,10 +69,14 @@ class PlaneMapper {
     /// it saw goes over to the nearest eight of those, see hand_over().
     void update(const KeyframeTrajectory& trajectory);
 
+    /// Takes over the keyframes of another mapper, of which a trajectory now says that they hang together with
+    /// this one's: the next update(), with that trajectory, makes one map of both. Its planes keep their ids.
+    void absorb(PlaneMapper&& other);
+
     /// How the camera is mounted on a robot that stands level on average; says which way is up.
-    void hear_mount(const Pose& body_from_camera) { told_.hear_mount(body_from_camera); }
+    void hear_mount(const Pose& body_from_camera) { told_->hear_mount(body_from_camera); }
     /// What an accelerometer read, before the keyframe of its time comes.
-    void hear(const Acceleration& reading) { told_.hear(reading); }
+    void hear(const Acceleration& reading) { told_->hear(reading); }
     /// Where map().up is from, or why it is not known: a clause.
     const std::string& why_up() const { return derived_.why_up(); }
 
@@ -121,16 +130,17 @@ class PlaneMapper {
     void hand_over_replaced(const KeyframeTrajectory& trajectory);
     void rebuild();
     void infer();
-    void refresh() { derived_.refresh(planes_.estimates(), keyframes_.poses(), told_); }
+    void refresh() { derived_.refresh(planes_.estimates(), keyframes_.poses(), *told_); }
 
     MapOptions options_;
     KeyframeStore keyframes_;
     Planes planes_;
     DerivedMap derived_;
-    ToldUp told_;
+    std::shared_ptr<ToldUp> told_;
     MapLosses losses_;
     std::size_t coarsened_ = 0, folded_ = 0, replaced_ = 0, rebuilds_ = 0;
-    bool settled_ = true;  ///< nothing came since the last rebuild
+    bool settled_ = true;    ///< nothing came since the last rebuild
+    bool absorbed_ = false;  ///< another mapper's keyframes, which are in no plane yet
 };
 
 }  // namespace planemap::map

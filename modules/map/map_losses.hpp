@@ -18,6 +18,18 @@ struct MapLosses {
     std::size_t keyframes_far_ahead = 0;  ///< with an id more than 10,000 after the largest one
     std::size_t keyframes_of_others = 0;  ///< with the id of one in the map, and another time
     std::size_t looks_refused = 0;        ///< of a keyframe or a state that is not known
+
+    MapLosses& operator+=(const MapLosses& other);
 };
+
+inline MapLosses& MapLosses::operator+=(const MapLosses& other) {
+    for (const auto count :
+         {&MapLosses::regions_refused, &MapLosses::regions_too_many, &MapLosses::regions_too_far,
+          &MapLosses::planes_refused, &MapLosses::poses_refused, &MapLosses::keyframes_unplaced,
+          &MapLosses::keyframes_again, &MapLosses::keyframes_too_late, &MapLosses::keyframes_far_ahead,
+          &MapLosses::keyframes_of_others, &MapLosses::looks_refused})
+        this->*count += other.*count;
+    return *this;
+}
 
 }  // namespace planemap::map

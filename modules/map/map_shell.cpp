@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "core/components.hpp"
 #include "map/earlier_map.hpp"
 #include "map/map_file.hpp"
 #include "messages/channels.hpp"
@@ -46,14 +47,14 @@ MapShell::MapShell(messages::Bus& bus, const MapShellOptions& options)
       output_(options.output),
       needs_planes_(options.needs_planes),
       tells_surfaces_(options.map.unites_surfaces()),
-      mapper_(options.map),
+      maps_(options.map),
       watch_(status_, options.start.empty()
                           ? "the map is incomplete"
                           : "what they saw is in the map only as far as the map to start from held it") {
-    if (!options.start.empty()) mapper_.start_from(read_plane_map(options.start));
+    if (!options.start.empty()) maps_.start_from(read_plane_map(options.start));
     tell_losses();
     status_.lost("fine edges of planes, since the map to start from is very large",
-                 static_cast<std::int64_t>(mapper_.coarsened()));
+                 static_cast<std::int64_t>(mapper().coarsened()));
     if (!options.journal.empty()) {
         journal_ = std::make_unique<messages::Journal>(options.journal);
         resume();
@@ -72,11 +73,11 @@ MapShell::MapShell(messages::Bus& bus, const MapShellOptions& options)
 }
 
 void MapShell::on_acceleration(const messages::RawMessage& message) {
-    mapper_.hear(messages::from_message(messages::decode<acceleration_t>(message.bytes)));
+    maps_.hear(messages::from_message(messages::decode<acceleration_t>(message.bytes)));
 }
 
 void MapShell::hear(const CameraInfo& camera) {
-    if (camera.body_from_camera) mapper_.hear_mount(*camera.body_from_camera);
+    if (camera.body_from_camera) maps_.hear_mount(*camera.body_from_camera);
 }
 
 void MapShell::on_camera(const messages::RawMessage& message) {
@@ -92,7 +93,7 @@ void MapShell::on_keyframe(const messages::RawMessage& message) {
     if (!keyframe_guard_.admits(received.session, received.seq, received.utime, message.bytes)) return;
     keyframes_of_ = received.session;
     watch_.came(keyframe.id, keyframe.previous_id, keyframe.utime);
-    mapper_.add(keyframe);
+    maps_.add(keyframe);
     if (journal_) journal_->add(message.channel, message.bytes);
     tell_losses();
     tell();
@@ -104,7 +105,7 @@ void MapShell::on_look(const messages::RawMessage& message) {
     if (received.session != keyframes_of_) return status_.count_loss("looks of another odometry");
     const bool has_changed = [&] {
         const messages::ModuleStatus::Work work(status_);
-        return mapper_.add(look);
+        return maps_.add(look);
     }();
     if (journal_) journal_->add(message.channel, message.bytes);
     tell_losses();
@@ -117,7 +118,7 @@ void MapShell::on_trajectory(const messages::RawMessage& message) {
     if (!trajectory_guard_.admits(received.session, received.seq, std::nullopt, message.bytes)) return;
     {
         const messages::ModuleStatus::Work work(status_);
-        mapper_.update(trajectory);
+        maps_.update(trajectory);
     }
     watch_.named(trajectory, messages::now_us());
     if (journal_) trajectory_.assign(message.bytes.begin(), message.bytes.end());
@@ -145,13 +146,13 @@ void MapShell::resume() {
                     return;
                 }
                 if (event.channel == messages::channels::kLook) {
-                    mapper_.add(messages::from_message(messages::decode<look_t>(event.bytes)));
+                    maps_.add(messages::from_message(messages::decode<look_t>(event.bytes)));
                     return;
                 }
                 keyframe_t received = messages::decode<keyframe_t>(event.bytes);
                 const Keyframe keyframe = messages::from_message(received);
                 watch_.came(keyframe.id, keyframe.previous_id, keyframe.utime);
-                mapper_.add(keyframe);
+                maps_.add(keyframe);
                 newest = std::move(received);
                 newest_bytes = event.bytes;
             } catch (const messages::MessageError& error) {
@@ -167,13 +168,13 @@ void MapShell::resume() {
     const trajectory_t last = messages::decode<trajectory_t>(trajectory);
     trajectory_guard_.resume(last.session, last.seq, std::nullopt, trajectory);
     const KeyframeTrajectory poses = messages::from_message(last);
-    mapper_.update(poses);
-    mapper_.restore_ids(surfaces);
+    maps_.update(poses);
+    maps_.restore_ids(surfaces);
     watch_.named(poses, messages::now_us());
     is_ours_ = true;  // what lies in the output folder is this map, as it was
     tell_losses();
-    spdlog::info("map: goes on with {} planes of {} keyframes of {}", mapper_.map().planes.size(),
-                 mapper_.keyframes(), file);
+    spdlog::info("map: goes on with {} planes of {} keyframes of {}", mapper().map().planes.size(),
+                 maps_.keyframes(), file);
     publish();
 }
 
@@ -194,10 +195,10 @@ void MapShell::tend_journal() {
         });
         journal_->compact([&](const messages::LogEvent& event) {
             if (event.channel == messages::channels::kKeyframe)
-                return mapper_.has_keyframe(messages::decode<keyframe_t>(event.bytes).id);
+                return maps_.has_keyframe(messages::decode<keyframe_t>(event.bytes).id);
             if (event.channel == messages::channels::kLook) {
                 const auto look = messages::decode<look_t>(event.bytes);
-                return mapper_.has_keyframe(look.keyframe_id) &&
+                return maps_.has_keyframe(look.keyframe_id) &&
                        (look.number == 0 || newest[look.keyframe_id] - look.number < kLooksKept);
             }
             return event.number >= last - 1;
@@ -210,14 +211,14 @@ void MapShell::save_poses_and_ids() {
     if (trajectory_.empty()) return;
     journal_->add(messages::channels::kTrajectory, trajectory_);
     journal_->add(messages::channels::kSurfaces, messages::to_bytes(messages::to_message(
-                                                     mapper_.surfaces(), surfaces_seq_, bus_.session())));
+                                                     maps_.surfaces(), surfaces_seq_, bus_.session())));
     trajectory_.clear();
     saved_us_ = messages::now_us();
 }
 
 /// What the mapper left out since the last time.
 void MapShell::tell_losses() {
-    const MapLosses now = mapper_.losses();
+    const MapLosses now = maps_.losses();
     const auto tell = [&](const char* what, std::size_t MapLosses::*count, bool is_whole_input = false) {
         const auto lost = static_cast<std::int64_t>(now.*count - told_.*count);
         status_.lost(what, lost);
@@ -238,11 +239,11 @@ void MapShell::tell_losses() {
 }
 
 void MapShell::publish() {
-    bus_.publish(messages::channels::kMap, messages::to_message(mapper_.map(), seq_++, bus_.session()));
+    publish_maps(seq_++);
     published_us_ = messages::now_us();
     publish_surfaces();
     // How old a map is, is told by the keyframe that is new in it.
-    if (const std::int64_t utime = mapper_.map().utime; utime > newest_utime_) {
+    if (const std::int64_t utime = mapper().map().utime; utime > newest_utime_) {
         newest_utime_ = utime;
         status_.published(utime, published_us_);
     } else {
@@ -252,23 +253,33 @@ void MapShell::publish() {
     tell();
 }
 
+/// Of the component with the most keyframes on its own channel, of others beside it.
+void MapShell::publish_maps(std::int32_t seq) {
+    const std::vector<const PlaneMapper*> maps = maps_.all();
+    for (std::size_t i = 0; i < std::min(maps.size(), kMostComponentFiles); ++i)
+        bus_.publish(i == 0 ? messages::channels::kMap : messages::channels::kOtherMaps,
+                     messages::to_message(maps[i]->map(), seq, bus_.session()));
+}
+
 /// After a rebuild: only that tells planes that were two and are one.
 void MapShell::publish_surfaces() {
-    if (!tells_surfaces_ || mapper_.rebuilds() == told_rebuilds_) return;
-    told_rebuilds_ = mapper_.rebuilds();
+    if (!tells_surfaces_ || maps_.rebuilds() == told_rebuilds_) return;
+    told_rebuilds_ = maps_.rebuilds();
     bus_.publish(messages::channels::kSurfaces,
-                 messages::to_message(mapper_.surfaces(), surfaces_seq_++, bus_.session()));
+                 messages::to_message(maps_.surfaces(), surfaces_seq_++, bus_.session()));
 }
 
 bool MapShell::is_up_missing() const {
-    return mapper_.map().up.isZero() && !mapper_.map().planes.empty();
+    return mapper().map().up.isZero() && !mapper().map().planes.empty();
 }
 
 /// What there is, and what keeps it from the disk.
 void MapShell::tell() {
-    std::string text = std::to_string(mapper_.map().planes.size()) + " planes";
-    if (mapper_.left_out_corners()) text += ", too many meet to find all corners";
-    if (const std::size_t waiting = mapper_.waiting(); waiting > 0)
+    std::string text = std::to_string(mapper().map().planes.size()) + " planes";
+    if (const std::size_t all = maps_.all().size(); all > 1)
+        text += " of the largest of " + std::to_string(all) + " components that do not hang together";
+    if (mapper().left_out_corners()) text += ", too many meet to find all corners";
+    if (const std::size_t waiting = maps_.waiting(); waiting > 0)
         text += ", " + std::to_string(waiting) + " keyframes wait for a pose";
     if (!write_error_.empty()) text += "; not written, trying every second: " + write_error_;
     if (is_up_missing()) text += "; up is not known";
@@ -280,7 +291,7 @@ int MapShell::poll() {
     watch_.tell(messages::now_us());
     if (published_us_ != 0 && messages::now_us() - published_us_ >= messages::kRepeat_us) {
         // For those who come late while the camera stands still: the same message again, which is no work.
-        bus_.publish(messages::channels::kMap, messages::to_message(mapper_.map(), seq_ - 1, bus_.session()));
+        publish_maps(seq_ - 1);
         published_us_ = messages::now_us();
     }
     const std::int64_t period = write_error_.empty() ? kWritePeriodUs : kRetryPeriodUs;
@@ -289,21 +300,21 @@ int MapShell::poll() {
 }
 
 void MapShell::settle() {
-    const std::size_t rebuilds = mapper_.rebuilds();
-    mapper_.settle();
-    if (mapper_.rebuilds() != rebuilds) publish();
+    const std::size_t rebuilds = maps_.rebuilds();
+    maps_.settle();
+    if (maps_.rebuilds() != rebuilds) publish();
 }
 
 void MapShell::finish() {
     settle();
     if (is_up_missing())
-        status_.remark("up", "up is not known, so no plane has a label: " + mapper_.why_up());
+        status_.remark("up", "up is not known, so no plane has a label: " + mapper().why_up());
     if (journal_) save_poses_and_ids();
     if (!output_.empty() && unwritten_) try_write();
     if (!output_.empty() && !is_ours_ && write_error_.empty())
         spdlog::info("{}: no planes came, so the earlier map stays", (output_ / kFile).string());
     if (!write_error_.empty()) throw std::runtime_error("the map could not be written: " + write_error_);
-    if (needs_planes_ && mapper_.map().planes.empty())
+    if (needs_planes_ && mapper().map().planes.empty())
         throw std::runtime_error("nothing was mapped: no planes came");
 }
 
@@ -348,9 +359,22 @@ void MapShell::write_failed(const std::string& why) {
 
 void MapShell::write() {
     make_folder(output_);  // somebody may have removed it
-    if (make_way()) write_plane_map(output_ / kFile, mapper_.map());
+    if (make_way()) write_maps();
     last_write_us_ = messages::now_us();
     unwritten_ = false;
+}
+
+/// The largest under its name, others beside it; of these what an earlier process left goes.
+void MapShell::write_maps() {
+    const std::vector<const PlaneMapper*> maps = maps_.all();
+    for (std::size_t number = 1; number <= kMostComponentFiles; ++number) {
+        const std::filesystem::path file = output_ / component_file(kFile, number);
+        std::error_code ignored;
+        if (number <= maps.size())
+            write_plane_map(file, maps[number - 1]->map());
+        else
+            std::filesystem::remove(file, ignored);
+    }
 }
 
 /// Keeps what an earlier process left, under another name. False while there is nothing to write that is
@@ -358,7 +382,7 @@ void MapShell::write() {
 bool MapShell::make_way() {
     const std::filesystem::path file = output_ / kFile;
     if (is_ours_ || !may_hold_planes(file)) return is_ours_ = true;
-    if (mapper_.map().planes.empty()) return false;
+    if (mapper().map().planes.empty()) return false;
     const KeptMap kept = keep_earlier_map(file);
     spdlog::info("the earlier map is kept as {}", kept.file.string());
     for (const std::filesystem::path& removed : kept.removed)

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "map/map.hpp"
+#include "map/component_maps.hpp"
 #include "messages/channels.hpp"
 #include "messages/journal.hpp"
 #include "messages/keyframe_watch.hpp"
@@ -19,7 +19,7 @@ struct MapShellOptions {
     MapOptions map;
     std::filesystem::path
         start;  ///< plane_map.lcmlog to start from, see PlaneMapper::start_from(); empty: none
-    /// Folder that plane_map.lcmlog is written to (beside and renamed), every few seconds and at the end;
+    /// Folder that plane_map.lcmlog, and plane_map_2.lcmlog ... of further components, is written to (beside and renamed), every few seconds and at the end;
     /// empty: none. A map of an earlier process stays until there are planes to write, and is then kept under
     /// another name (keep_earlier_map()). The folder is tried at the start: a path that cannot be one is an
     /// error. A disk that is full is not, nor a write that fails later: it is said in the status and tried
@@ -31,7 +31,8 @@ struct MapShellOptions {
     bool needs_planes = false;  ///< finish() throws if the map has none
 };
 
-/// PLANEMAP_KEYFRAME, PLANEMAP_LOOK and PLANEMAP_TRAJECTORY to PLANEMAP_MAP; PLANEMAP_CAMERA_INFO and
+/// PLANEMAP_KEYFRAME, PLANEMAP_LOOK and PLANEMAP_TRAJECTORY to PLANEMAP_MAP, the map of the component with the
+/// most keyframes, and PLANEMAP_MAP_OTHERS, those of others; PLANEMAP_CAMERA_INFO and
 /// PLANEMAP_ACCELERATION tell which way is up. Throws std::runtime_error naming the file for a map to start
 /// from that cannot be read, and for an output folder that cannot be one.
 class MapShell : public messages::Shell {
@@ -47,7 +48,9 @@ class MapShell : public messages::Shell {
     /// Brings the map up to date with all that came, and says so if that changed it.
     void settle();
 
-    const PlaneMapper& mapper() const { return mapper_; }
+    /// The map of the component with the most keyframes: what PLANEMAP_MAP is.
+    const PlaneMapper& mapper() const { return maps_.largest(); }
+    const ComponentMaps& maps() const { return maps_; }
 
   private:
     void on_keyframe(const messages::RawMessage& message);
@@ -60,12 +63,14 @@ class MapShell : public messages::Shell {
     void save_poses_and_ids();
     void tell_losses();
     void publish();
+    void publish_maps(std::int32_t seq);
     void publish_surfaces();
     void tell();
     bool is_up_missing() const;
     void try_output();
     void try_write();
     void write();
+    void write_maps();
     bool make_way();
     void write_failed(const std::string& why);
 
@@ -73,7 +78,7 @@ class MapShell : public messages::Shell {
     std::filesystem::path output_;
     bool needs_planes_;
     bool tells_surfaces_;
-    PlaneMapper mapper_;
+    ComponentMaps maps_;
     messages::ModuleStatus status_{"map"};
     messages::StreamGuard keyframe_guard_{messages::channels::kKeyframe, "keyframes", status_};
     messages::StreamGuard trajectory_guard_{messages::channels::kTrajectory, "trajectories", status_, false};

@@ -7,7 +7,7 @@
 namespace planemap::map {
 
 void PlaneIds::reserve(int id) {
-    next_ = std::max(next_, id + 1);
+    *next_ = std::max(*next_, id + 1);
 }
 
 std::map<int, int> PlaneIds::carry_over(const std::vector<int>& now, const std::vector<int>& kept,
@@ -28,9 +28,9 @@ std::map<int, int> PlaneIds::carry_over(const std::vector<int>& now, const std::
         id_of[pair.second] = pair.first;
         taken.insert(pair.first);
     }
-    next_ = first_provisional;
+    *next_ = first_provisional;
     for (const int id : now) {
-        if (id_of.try_emplace(id, next_).second) ++next_;
+        if (id_of.try_emplace(id, *next_).second) ++*next_;
     }
     return id_of;
 }

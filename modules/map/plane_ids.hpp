@@ -2,22 +2,23 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <utility>
 #include <vector>
 
 namespace planemap::map {
 
 /// Hands out the ids of planes, and carries them over when the planes are made anew. An id that was in a map
-/// is not given to another plane.
+/// is not given to another plane. Copies hand out of one supply: maps that may become one share it.
 class PlaneIds {
   public:
     /// Inliers that were in one plane (first) and are in another one now (second).
     using Votes = std::map<std::pair<int, int>, double>;
 
     /// A new id.
-    int next() { return next_++; }
+    int next() { return (*next_)++; }
     /// The one that next() would give.
-    int upcoming() const { return next_; }
+    int upcoming() const { return *next_; }
     /// Takes an id that came with a plane from elsewhere.
     void reserve(int id);
 
@@ -28,7 +29,7 @@ class PlaneIds {
                                   const Votes& votes, int first_provisional);
 
   private:
-    int next_ = 0;
+    std::shared_ptr<int> next_ = std::make_shared<int>(0);
 };
 
 }  // namespace planemap::map

@@ -44,13 +44,14 @@ std::vector<Viewpoint> views_before(const StoredKeyframe& view, KeyframeStore& s
 
 }  // namespace
 
-Planes::Planes(const MapOptions& options)
+Planes::Planes(const MapOptions& options, PlaneIds ids)
     : threads_(options.threads),
       surfaces_(surface_rules(options)),
       joiner_({options.pose_sigma_m, options.agreement_m}, options.outline_cell_m),
       free_space_(options.see_through_m),
       planes_(merge_rules(options), options.max_extent_m),
-      folded_(merge_rules(options), options.max_extent_m) {}
+      folded_(merge_rules(options), options.max_extent_m),
+      ids_(std::move(ids)) {}
 
 void Planes::start_from(PlaneEstimate plane) {
     ids_.reserve(plane.id);

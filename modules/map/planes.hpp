@@ -21,7 +21,7 @@ namespace planemap::map {
 /// in the map is the id of the plane that it is part of, or -1 where it is too far out.
 class Planes {
   public:
-    explicit Planes(const MapOptions& options);
+    explicit Planes(const MapOptions& options, PlaneIds ids = {});
 
     /// Takes a plane of a finished map; it is part of the map from the next rebuild() on.
     void start_from(PlaneEstimate plane);

@@ -32,6 +32,7 @@ void ToldUp::hear(const Acceleration& reading) {
 }
 
 void ToldUp::came(int keyframe_id, std::int64_t utime) {
+    if (read_camera_.contains(keyframe_id)) return;
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     for (const Acceleration& reading : recent_)
         if (std::abs(reading.utime - utime) <= kAbout_us) sum += reading.acceleration_camera;

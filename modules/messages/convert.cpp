@@ -314,6 +314,7 @@ keyframe_t to_message(const Keyframe& keyframe, std::int32_t seq, std::int64_t s
     message.seq = seq;
     message.id = keyframe.id;
     message.odom_from_camera = to_message(keyframe.odom_from_camera);
+    message.chain = keyframe.chain;
     message.previous_id = keyframe.previous_id;
     message.previous_from_camera = to_message(keyframe.previous_from_camera);
     copy_covariance(keyframe.covariance, message.covariance);
@@ -362,6 +363,8 @@ Keyframe from_message(const keyframe_t& message) {
     require(message.previous_id >= -1 && message.previous_id < message.id, "keyframe.previous_id",
             "is not an earlier keyframe");
     keyframe.previous_id = message.previous_id;
+    require(message.chain >= -1 && message.chain <= message.id, "keyframe.chain", "is not an earlier keyframe");
+    keyframe.chain = message.chain;
     keyframe.odom_from_camera = from_message(message.odom_from_camera, "keyframe.odom_from_camera");
     keyframe.previous_from_camera =
         from_message(message.previous_from_camera, "keyframe.previous_from_camera");
@@ -430,7 +433,9 @@ trajectory_t to_message(const KeyframeTrajectory& trajectory, std::int32_t seq, 
         message.ids.push_back(keyframe.id);
         message.utimes.push_back(keyframe.utime);
         message.world_from_camera.push_back(to_message(keyframe.world_from_camera));
+        message.components.push_back(keyframe.component);
     }
+    message.n_components = message.n_keyframes;
     return message;
 }
 
@@ -441,12 +446,17 @@ KeyframeTrajectory from_message(const trajectory_t& message) {
     trajectory.loop_closures = message.n_loop_closures;
     trajectory.world_from_odom = from_message(message.world_from_odom, "trajectory.world_from_odom");
     const auto count = static_cast<std::size_t>(message.n_keyframes);
+    require(message.n_components == 0 || message.n_components == message.n_keyframes,
+            "trajectory.n_components", "is neither 0 nor n_keyframes");
     for (std::size_t i = 0; i < count; ++i) {
         require(message.ids[i] >= 0 && (i == 0 || message.ids[i] > message.ids[i - 1]), "trajectory.ids",
                 "do not ascend");
+        const int component = message.n_components == 0 ? message.ids[0] : message.components[i];
+        require(component >= 0 && component <= message.ids[i], "trajectory.components",
+                "is not an earlier keyframe");
         trajectory.keyframes.push_back(
             {message.ids[i], checked_utime(message.utimes[i], "trajectory.utimes"),
-             from_message(message.world_from_camera[i], "trajectory.world_from_camera")});
+             from_message(message.world_from_camera[i], "trajectory.world_from_camera"), component});
     }
     return trajectory;
 }
@@ -593,6 +603,7 @@ plane_map_t to_message(const PlaneMap& map, std::int32_t seq, std::int64_t sessi
     message.utime = map.utime;
     message.seq = seq;
     message.revision = map.revision;
+    message.component = map.component;
     std::copy(map.up.data(), map.up.data() + 3, message.up);
     if (map.planes.size() > 32767) throw std::length_error("plane map: more than 32767 planes");
     for (const MapPlane& plane : map.planes) message.planes.push_back(to_message(plane));
@@ -628,6 +639,8 @@ PlaneMap from_message(const plane_map_t& message) {
     PlaneMap map;
     map.utime = checked_utime(message.utime, "plane_map.utime");
     map.revision = message.revision;
+    require(message.component >= 0, "component", "is negative");
+    map.component = message.component;
     map.up = Eigen::Vector3f(message.up);
     require(map.up.allFinite() && (map.up.isZero() || std::abs(map.up.norm() - 1) < 1e-3f), "up",
             "is neither zero nor a unit vector");

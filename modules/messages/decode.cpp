@@ -150,7 +150,7 @@ void walk(Walker& w, const keyframe_t*) {
     w.array(features, 2, "regions_of");
     w.array(w.length("n_descriptor_bytes"), 1, "descriptors");
     walk_regions(w);
-    w.skip(5 * 8 + 8, "noise");
+    w.skip(5 * 8 + 8 + 4, "noise");
 }
 void walk(Walker& w, const look_t*) {
     w.skip(8 + 4 + 4 + 8 + 4 + 4 + kTransform, "look");
@@ -161,6 +161,7 @@ void walk(Walker& w, const trajectory_t*) {
     w.skip(8 + 4 + 4 + 4 + kTransform, "trajectory");
     w.array(w.length("n_keyframes"), 4 + 8 + kTransform, "keyframes");
     w.skip(8, "session");
+    w.array(w.length("n_components"), 4, "components");
 }
 void walk(Walker& w, const surfaces_t*) {
     w.skip(8 + 4, "surfaces");
@@ -187,6 +188,7 @@ void walk(Walker& w, const plane_map_t*) {
         w.array(w.length("inferred.n_rings", 2), 2, "inferred.ring_sizes");
         w.array(w.length("inferred.n_vertices"), 4, "inferred.vertices");
     }
+    w.skip(4, "component");
 }
 void walk(Walker& w, const map_size_t*) {
     w.skip(8 + 4 + 8 * 6 + 8 + 8, "sizes");
@@ -221,11 +223,17 @@ std::vector<Earlier> earlier(const camera_info_t*) {
     unknown[kW + 1] = 0xf0;
     return {{0xbb0361eb1a14a65e, unknown}};
 }
+std::vector<Earlier> earlier(const keyframe_t*) {
+    return {{0x13937206eb19e2fb, {0xff, 0xff, 0xff, 0xff}}};  // of a chain that is not known
+}
+std::vector<Earlier> earlier(const trajectory_t*) {
+    return {{0x8c700ec367b299b8, zeros(4)}};
+}
 std::vector<Earlier> earlier(const planar_regions_t*) {
     return {{0xaedd3398cc393ca2, zeros(8)}};
 }
 std::vector<Earlier> earlier(const plane_map_t*) {
-    return {{0x890cd1fe3f86f0fa, zeros(4)}, {0xad69623d7bd0a548, zeros(8 + 4)}};
+    return {{0x890cd1fe3f86f0fa, zeros(4 + 4)}, {0xad69623d7bd0a548, zeros(8 + 4 + 4)}};
 }
 std::vector<Earlier> earlier(const map_size_t*) {
     return {{0xcc3bbfa6fd82ffe7, zeros(8)}};

@@ -16,8 +16,7 @@ void remark_new_part(ModuleStatus& status, int id, int previous_id, std::int64_t
     if (id <= 0 || previous_id >= 0) return;
     status.remark("part", "keyframe " + std::to_string(id) + ", at " + seconds_text(utime) +
                               ", does not hang on those before (tracking was lost, or the sensor started "
-                              "again): poses from there on are not known relative to those before, unless a "
-                              "loop closure ties them");
+                              "again): a component of its own begins, until a loop closure ties it to them");
 }
 
 void KeyframeWatch::came(int id, int previous_id, std::int64_t utime) {

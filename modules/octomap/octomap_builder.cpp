@@ -29,7 +29,12 @@ bool OctomapBuilder::add_look(ScanId id, const DepthImage& depth, const CameraIn
                               const Pose& world_from_camera, const ScanAnchor& anchor) {
     camera.validate();
     if (depth.width != camera.depth.width || depth.height != camera.depth.height) return false;
-    if (!keep_look(id, std::make_shared<StoredScan>(depth, camera), world_from_camera, anchor)) return false;
+    return add_look(id, std::make_shared<StoredScan>(depth, camera), world_from_camera, anchor);
+}
+
+bool OctomapBuilder::add_look(ScanId id, std::shared_ptr<const StoredScan> scan,
+                              const Pose& world_from_camera, const ScanAnchor& anchor) {
+    if (!keep_look(id, std::move(scan), world_from_camera, anchor)) return false;
     if (!rebuild_due()) {
         while (insert_next({})) continue;
     }

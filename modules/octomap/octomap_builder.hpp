@@ -60,6 +60,9 @@ class OctomapBuilder {
     /// one number, the last counts; they come into the tree after their keyframe.
     bool add_look(ScanId id, const DepthImage& depth, const CameraInfo& camera, const Pose& world_from_camera,
                   const ScanAnchor& anchor);
+    /// The same of what is kept of a depth image.
+    bool add_look(ScanId id, std::shared_ptr<const StoredScan> scan, const Pose& world_from_camera,
+                  const ScanAnchor& anchor);
 
     /// add() without touching the tree: advance() will.
     bool keep(int keyframe_id, std::shared_ptr<const StoredScan> scan, const Pose& world_from_camera);

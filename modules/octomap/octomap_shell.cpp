@@ -10,6 +10,7 @@
 #include <thread>
 #include <utility>
 
+#include "core/components.hpp"
 #include "core/files.hpp"
 #include "messages/channels.hpp"
 #include "messages/convert.hpp"
@@ -37,6 +38,7 @@ OctomapShell::OctomapShell(messages::Bus& bus, std::shared_ptr<messages::FrameDe
                            const OctomapOptions& options, Building building, const OctomapFiles& files)
     : bus_(bus),
       decoder_(std::move(decoder)),
+      options_(options),
       builder_(std::make_unique<OctomapBuilder>(options)),
       resolution_m_(options.resolution_m),
       max_keyframes_(static_cast<std::size_t>(options.max_keyframes)),
@@ -92,7 +94,7 @@ void OctomapShell::on_keyframe(const messages::RawMessage& message) {
     const std::shared_ptr<const messages::Frame> frame = recent(received.utime);
     if (!frame) return drop("keyframes whose frame was gone");
     if (journal_) keep(*frame, message.bytes);
-    waiting_[received.id] = kept(frame);
+    waiting_[received.id] = scan_of(*frame);
     if (waiting_.size() > kMaxWaiting) {
         waiting_.erase(waiting_.begin());
         drop("keyframes that never got a pose");
@@ -106,10 +108,9 @@ std::shared_ptr<const messages::Frame> OctomapShell::recent(std::int64_t utime) 
     return found == recent_.end() ? nullptr : found->frame;
 }
 
-OctomapShell::Waiting OctomapShell::kept(const std::shared_ptr<const messages::Frame>& frame) {
-    if (!worker_) return {frame, nullptr};
+std::shared_ptr<const StoredScan> OctomapShell::scan_of(const messages::Frame& frame) {
     const messages::ModuleStatus::Work work(status_);
-    return {nullptr, std::make_shared<StoredScan>(frame->depth(), frame->camera())};
+    return std::make_shared<StoredScan>(frame.depth(), frame.camera());
 }
 
 /// A look that saw what changed: its depth comes into the tree, too.
@@ -120,7 +121,7 @@ void OctomapShell::on_look(const messages::RawMessage& message) {
     const std::shared_ptr<const messages::Frame> frame = recent(look.utime);
     if (!frame) return drop("looks whose frame was gone");
     looks_.push_back(
-        {{newest_id_, ++looks_since_}, {look.keyframe_id, look.keyframe_from_camera}, kept(frame)});
+        {{newest_id_, ++looks_since_}, {look.keyframe_id, look.keyframe_from_camera}, scan_of(*frame)});
     if (looks_.size() > kMaxWaiting) {
         looks_.pop_front();
         drop("looks whose keyframe never got a pose");
@@ -134,7 +135,7 @@ void OctomapShell::add_looks() {
         const WaitingLook& look = looks_.front();
         const std::optional<Pose> anchor = poses_.pose_of(look.anchor.keyframe_id);
         if (!anchor || waiting_.contains(look.id.keyframe)) return;
-        add(look.id, look.depth, *anchor * look.anchor.keyframe_from_camera, look.anchor);
+        add(look.id, look.scan, *anchor * look.anchor.keyframe_from_camera, look.anchor);
         looks_.pop_front();
     }
 }
@@ -147,10 +148,19 @@ void OctomapShell::on_trajectory(const messages::RawMessage& message) {
     take(trajectory);
 }
 
-void OctomapShell::take(const KeyframeTrajectory& trajectory) {
-    watch_.named(trajectory, messages::now_us());
+/// The tree is of the component with the most keyframes: where others lie in it is not known. Their keyframes
+/// wait.
+void OctomapShell::take(const KeyframeTrajectory& all) {
+    const int largest = largest_component(all);
+    const bool stands_alone = std::any_of(all.keyframes.begin(), all.keyframes.end(), [&](const auto& pose) {
+        return largest != component_ && pose.component == component_;
+    });
+    if (stands_alone) start_over();
+    component_ = largest;
+    const KeyframeTrajectory trajectory = of_component(all, largest);
+    watch_.named(all, messages::now_us());
     named_.clear();
-    for (const KeyframePose& pose : trajectory.keyframes) named_.insert(pose.id);
+    for (const KeyframePose& pose : all.keyframes) named_.insert(pose.id);
     poses_.update(trajectory.keyframes);
     poses_.keep_replaced([&](int id) { return id > newest_id_ - kReplacedKept; });
     last_utime_ = trajectory.utime;
@@ -159,13 +169,26 @@ void OctomapShell::take(const KeyframeTrajectory& trajectory) {
     for (const KeyframePose& pose : trajectory.keyframes) {
         const auto waiting = waiting_.find(pose.id);
         if (waiting == waiting_.end()) continue;
-        const Waiting keyframe = waiting->second;
+        const std::shared_ptr<const StoredScan> scan = waiting->second;
         waiting_.erase(waiting);
-        add(pose.id, keyframe, pose.world_from_camera, {pose.id, Pose::Identity()});
+        add(pose.id, scan, pose.world_from_camera, {pose.id, Pose::Identity()});
     }
     add_looks();
     if (worker_) worker_->update(trajectory);
     unpublished_ = true;
+}
+
+/// Another component has become the largest: what the tree holds lies nowhere in it.
+void OctomapShell::start_over() {
+    const bool is_in_background = worker_ != nullptr;
+    worker_.reset();
+    drop("keyframes of a component that is the largest no more",
+         static_cast<std::int64_t>(builder_->keyframes_in_tree() + builder_->waiting()));
+    builder_ = std::make_unique<OctomapBuilder>(options_);
+    if (is_in_background) worker_ = std::make_unique<OctomapWorker>(*builder_);
+    poses_ = {};
+    looks_.clear();
+    frozen_ = refused_ = 0;
 }
 
 /// Takes keyframes, their depth and their poses from the process before.
@@ -188,8 +211,7 @@ void OctomapShell::resume() {
                 const auto received = messages::decode<keyframe_t>(event.bytes);
                 if (received.utime != frame->utime()) return;
                 watch_.came(received.id, received.previous_id, received.utime);
-                waiting_[received.id] = {worker_ ? nullptr : frame,
-                                         std::make_shared<StoredScan>(frame->depth(), frame->camera())};
+                waiting_[received.id] = std::make_shared<StoredScan>(frame->depth(), frame->camera());
                 newest = event.bytes;
             }
         } catch (const std::exception& error) {
@@ -272,16 +294,15 @@ void OctomapShell::write_tree() {
     write_file(output_ / "octomap.bt", builder_->bt());
 }
 
-void OctomapShell::add(ScanId id, const Waiting& keyframe, const Pose& world_from_camera,
-                       const ScanAnchor& anchor) {
+void OctomapShell::add(ScanId id, const std::shared_ptr<const StoredScan>& scan,
+                       const Pose& world_from_camera, const ScanAnchor& anchor) {
     if (worker_) {
-        if (!worker_->add(id, keyframe.scan, world_from_camera, anchor))
+        if (!worker_->add(id, scan, world_from_camera, anchor))
             return drop("keyframes that the OctoMap was too slow for");
         return status_.published();
     }
-    const DepthImage& depth = keyframe.frame->depth();
     const messages::ModuleStatus::Work work(status_);
-    if (builder_->add_look(id, depth, keyframe.frame->camera(), world_from_camera, anchor)) {
+    if (builder_->add_look(id, scan, world_from_camera, anchor)) {
         status_.published();
     } else {
         drop("keyframes that the OctoMap refused");
@@ -301,7 +322,10 @@ int OctomapShell::poll() {
 }
 
 void OctomapShell::finish() {
-    drop("keyframes that never got a pose", static_cast<std::int64_t>(waiting_.size()));
+    const auto others = std::count_if(waiting_.begin(), waiting_.end(),
+                                      [&](const auto& waiting) { return named_.contains(waiting.first); });
+    drop("keyframes of components other than the largest", others);
+    drop("keyframes that never got a pose", static_cast<std::int64_t>(waiting_.size()) - others);
     waiting_.clear();
     if (journal_) save_trajectory();
     if (!worker_) {

@@ -59,26 +59,21 @@ class OctomapShell : public messages::Shell {
         std::shared_ptr<const messages::Frame> frame;
         std::size_t bytes;
     };
-    /// A keyframe without a pose. In the background its depth is compressed at once: to do so with many
-    /// when their poses come would block.
-    struct Waiting {
-        std::shared_ptr<const messages::Frame> frame;
-        std::shared_ptr<const StoredScan> scan;
-    };
-
     void on_frame(const std::shared_ptr<const messages::Frame>& frame);
     void on_keyframe(const messages::RawMessage& message);
     void on_look(const messages::RawMessage& message);
     void on_trajectory(const messages::RawMessage& message);
-    void take(const KeyframeTrajectory& trajectory);
+    void take(const KeyframeTrajectory& all);
     void resume();
     void keep(const messages::Frame& frame, std::span<const std::uint8_t> bytes);
     void tend_journal();
     void save_trajectory();
     void write_tree();
     std::shared_ptr<const messages::Frame> recent(std::int64_t utime) const;
-    Waiting kept(const std::shared_ptr<const messages::Frame>& frame);
-    void add(ScanId id, const Waiting& keyframe, const Pose& world_from_camera, const ScanAnchor& anchor);
+    std::shared_ptr<const StoredScan> scan_of(const messages::Frame& frame);
+    void add(ScanId id, const std::shared_ptr<const StoredScan>& scan, const Pose& world_from_camera,
+             const ScanAnchor& anchor);
+    void start_over();
     void add_looks();
     void drop(const char* reason, std::int64_t count = 1);
     /// In the handler: the state with everything brought up to date.
@@ -87,6 +82,7 @@ class OctomapShell : public messages::Shell {
 
     messages::Bus& bus_;
     std::shared_ptr<messages::FrameDecoder> decoder_;
+    OctomapOptions options_;
     std::unique_ptr<OctomapBuilder> builder_;
     std::unique_ptr<OctomapWorker> worker_;  ///< null when built in the handler
     messages::ModuleStatus status_{"octomap"};
@@ -101,14 +97,17 @@ class OctomapShell : public messages::Shell {
     std::set<int> named_;                         ///< keyframes of the last trajectory
     std::int64_t saved_us_ = 0,
                  keyframes_of_ = 0;   ///< wall clock of the last save; session of the last keyframe
-    std::map<int, Waiting> waiting_;  ///< by keyframe id
+    /// Keyframes without a pose in the largest component, by id. Their depth is compressed at once: to do so
+    /// with many when their poses come would block.
+    std::map<int, std::shared_ptr<const StoredScan>> waiting_;
     struct WaitingLook {
         ScanId id;
         ScanAnchor anchor;
-        Waiting depth;
+        std::shared_ptr<const StoredScan> scan;
     };
     std::deque<WaitingLook> looks_;  ///< that wait for their keyframe's pose
     KeyframePoses poses_;            ///< by the trajectories
+    int component_ = -1;             ///< the largest, which the tree is of; -1: none yet
     int newest_id_ = -1;             ///< of the keyframes that came
     int looks_since_ = 0;            ///< the newest one
     double resolution_m_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "odometry/camera_motion.hpp"
+#include "odometry/chains.hpp"
 #include "odometry/keyframe_choice.hpp"
 #include "odometry/keyframe_making.hpp"
 #include "odometry/local_keyframes.hpp"
@@ -43,13 +44,14 @@ class Odometry::State {
     std::optional<Keyframe> begin(PreparedFrame& frame);
     std::optional<Keyframe> change_keyframe(PreparedFrame& frame, const Located& located);
     Keyframe add_keyframe(PreparedFrame& frame, LocalKeyframe local, const Pose& odom_from_camera,
-                          const FrameMotion& motion);
+                          const FrameMotion& motion, const Located* located);
     OdometryEstimate estimate_at(const Keyframe& keyframe) const;
 
     OdometryOptions options_;
     CameraInfo camera_;
     std::int64_t utime_ = 0;  ///< of the last frame
     int next_id_ = 0;
+    Chains chains_;
     bool resumed_ = false;  ///< and no place was found yet
     Readout readout_;
     CameraMotion motion_;
@@ -82,6 +84,7 @@ OdometryResult Odometry::State::process(const OdometryFrame& input) {
     }
     result.news = news;
     result.estimate.utime = result.estimate.pose_utime = input.utime;
+    result.estimate.chain = chains_.of(result.estimate.keyframe_id);
     return result;
 }
 
@@ -129,6 +132,7 @@ void Odometry::State::resume(std::span<const Keyframe> keyframes) {
     if (keyframes.empty()) return;
     for (const Keyframe& keyframe : keyframes) {
         relocaliser_.add(keyframe);
+        chains_.remember(keyframe.id, keyframe.chain);
         next_id_ = std::max(next_id_, keyframe.id + 1 + kIdsLeftOut);
     }
     motion_.stand_at(keyframes.back().odom_from_camera, keyframes.back().utime);
@@ -153,10 +157,8 @@ OdometryResult Odometry::State::find_again(PreparedFrame& frame) {
     LocalKeyframe local = make_local_keyframe(options_, frame, motion);
     if (!can_be_tracked_against(local, options_.min_inliers)) return result;
     resumed_ = false;
-    Keyframe keyframe = add_keyframe(frame, std::move(local), located->odom_from_camera(), motion);
-    keyframe.previous_id = located->keyframe_id;
-    keyframe.previous_from_camera = located->keyframe_from_camera();
-    keyframe.covariance = located->covariance();
+    Keyframe keyframe =
+        add_keyframe(frame, std::move(local), located->odom_from_camera(), motion, &*located);
     result.estimate = estimate_at(keyframe);
     result.estimate.features = located->track.tried;
     result.estimate.inliers = located->track.inliers;
@@ -229,7 +231,7 @@ std::optional<Keyframe> Odometry::State::begin(PreparedFrame& frame) {
     LocalKeyframe local = make_local_keyframe(options_, frame, motion);
     if (!can_be_tracked_against(local, 2 * options_.min_inliers)) return std::nullopt;
     keyframes_.clear();
-    return add_keyframe(frame, std::move(local), motion_.odom_from_camera(), motion);
+    return add_keyframe(frame, std::move(local), motion_.odom_from_camera(), motion, nullptr);
 }
 
 /// Goes over to another keyframe that is known, else to a new one of this frame, where that is of use.
@@ -249,18 +251,22 @@ std::optional<Keyframe> Odometry::State::change_keyframe(PreparedFrame& frame, c
         method_->go_on_from(frame, track);
         return std::nullopt;
     }
-    Keyframe keyframe = add_keyframe(frame, std::move(local), located.odom_from_camera(), motion);
-    keyframe.previous_id = located.keyframe_id;
-    keyframe.previous_from_camera = located.keyframe_from_camera();
-    keyframe.covariance = located.covariance();
-    return keyframe;
+    return add_keyframe(frame, std::move(local), located.odom_from_camera(), motion, &located);
 }
 
+/// Its edge leads from the keyframe that the frame was located against; without one (nullptr) a chain begins.
 Keyframe Odometry::State::add_keyframe(PreparedFrame& frame, LocalKeyframe local,
-                                       const Pose& odom_from_camera, const FrameMotion& motion) {
+                                       const Pose& odom_from_camera, const FrameMotion& motion,
+                                       const Located* located) {
     Keyframe keyframe = make_keyframe(options_, frame, motion);
     keyframe.id = local.id = next_id_++;
     keyframe.odom_from_camera = local.odom_from_keyframe = odom_from_camera;
+    if (located != nullptr) {
+        keyframe.previous_id = located->keyframe_id;
+        keyframe.previous_from_camera = located->keyframe_from_camera();
+        keyframe.covariance = located->covariance();
+    }
+    keyframe.chain = chains_.add(keyframe.id, keyframe.previous_id);
     if (frame.gray) relocaliser_.add(keyframe, frame);
     method_->go_on_from(frame, local);
     keyframes_.add(std::move(local));

@@ -76,6 +76,7 @@ void OdometryShell::resume() {
     if (!keyframes.empty()) {
         const Keyframe& first = keyframes.front();
         first_keyframe_ = {first.id, first.utime, first.odom_from_camera};
+        first_chain_ = first.chain;
     }
     if (!keyframes.empty())
         spdlog::info("odometry: knows {} keyframes of {}; lost until it finds a place that they saw",
@@ -236,11 +237,9 @@ void OdometryShell::process(const Waiting& input) {
     bus_.publish(messages::channels::kOdometry,
                  messages::to_message(result.estimate, odometry_seq_++, bus_.session()));
     count(result.news);
-    if (is_tracked(result.estimate.status)) publish_body(result.estimate, frame.camera());
-    if (const auto& keyframe = result.keyframe) {
-        if (!first_keyframe_) first_keyframe_ = {keyframe->id, keyframe->utime, keyframe->odom_from_camera};
-        publish(*keyframe);
-    }
+    if (result.keyframe) remember_chain(*result.keyframe);
+    publish_body(result.estimate, frame.camera());
+    if (result.keyframe) publish(*result.keyframe);
     if (result.news.depth == News::Image::kNew) publish_look(result, in.regions);
     status_.published(result.estimate.utime, messages::now_us());
     const bool is_lost = result.estimate.status == TrackingStatus::kLost;
@@ -249,14 +248,40 @@ void OdometryShell::process(const Waiting& input) {
     status_.set_text(text_of(result.estimate) + (is_lost ? "" : "; " + body_.text()));
 }
 
+/// The first keyframe of each odom frame, by which a trajectory says how they lie about each other.
+void OdometryShell::remember_chain(const Keyframe& keyframe) {
+    constexpr std::size_t kMostApart = 64;
+    const Start start{keyframe.id, keyframe.utime, keyframe.odom_from_camera};
+    if (!first_keyframe_) {
+        first_keyframe_ = start;
+        first_chain_ = keyframe.chain;
+    } else if (keyframe.chain == keyframe.id) {
+        apart_[keyframe.chain] = start;
+        if (apart_.size() > kMostApart) apart_.erase(apart_.begin());
+    }
+}
+
 void OdometryShell::on_trajectory(const messages::RawMessage& message) {
-    if (body_.is_known() || !first_keyframe_) return;
+    if ((body_.is_known() && apart_.empty()) || !first_keyframe_) return;
     const KeyframeTrajectory trajectory =
         messages::from_message(messages::decode<trajectory_t>(message.bytes));
-    for (const KeyframePose& keyframe : trajectory.keyframes) {
-        if (keyframe.id == first_keyframe_->id && keyframe.utime == first_keyframe_->utime)
-            odom_from_world_ = first_keyframe_->odom_from_camera * keyframe.world_from_camera.inverse();
-    }
+    const auto named = [&](const Start& start) {
+        const auto found = std::find_if(
+            trajectory.keyframes.begin(), trajectory.keyframes.end(),
+            [&](const KeyframePose& pose) { return pose.id == start.id && pose.utime == start.utime; });
+        return found == trajectory.keyframes.end() ? nullptr : &*found;
+    };
+    const KeyframePose* first = named(*first_keyframe_);
+    if (first == nullptr) return;
+    odom_from_world_ = first_keyframe_->odom_from_camera * first->world_from_camera.inverse();
+    std::erase_if(apart_, [&](const auto& entry) {
+        const auto& [chain, start] = entry;
+        const KeyframePose* pose = named(start);
+        if (pose == nullptr || pose->component != first->component) return false;
+        first_from_odom_[chain] =
+            *odom_from_world_ * pose->world_from_camera * start.odom_from_camera.inverse(Eigen::Isometry);
+        return true;
+    });
 }
 
 void OdometryShell::on_map(const messages::RawMessage& message) {
@@ -265,8 +290,21 @@ void OdometryShell::on_map(const messages::RawMessage& message) {
     if (!up.isZero()) body_.hear_up(odom_from_world_->linear() * up.cast<double>());
 }
 
-/// POSE_BODY, and once a second of the frames' time how its frames lie about ours, for those who come late.
-void OdometryShell::publish_body(const OdometryEstimate& estimate, const CameraInfo& camera) {
+/// POSE_BODY, and once a second of the frames' time how its frames lie about ours, for those who come late. After
+/// a loss it is silent until a loop closure says how the odom frame lies about the first one.
+void OdometryShell::publish_body(OdometryEstimate estimate, const CameraInfo& camera) {
+    if (!is_tracked(estimate.status)) return;
+    if (estimate.chain != first_chain_) {
+        const auto known = first_from_odom_.find(estimate.chain);
+        status_.remark("body frame", known != first_from_odom_.end()
+                                         ? std::string()
+                                         : "POSE_BODY is silent: where the camera is, relative to where it "
+                                           "was before tracking was lost, is not known");
+        if (known == first_from_odom_.end()) return;
+        estimate.odom_from_camera = known->second * estimate.odom_from_camera;
+    } else {
+        status_.remark("body frame", "");
+    }
     body_.see(estimate, camera.body_from_camera);
     if (!body_.is_known()) return;
     bus_.publish(messages::channels::kPose,

@@ -68,13 +68,14 @@ class OdometryShell : public messages::Shell {
     void on_regions(const messages::RawMessage& message);
     void on_trajectory(const messages::RawMessage& message);
     void on_map(const messages::RawMessage& message);
-    void publish_body(const OdometryEstimate& estimate, const CameraInfo& camera);
+    void publish_body(OdometryEstimate estimate, const CameraInfo& camera);
     void process_ready(std::size_t max_waiting);
     void process_front();
     void process(const Waiting& input);
     void resume();
     void tend_journal();
     void count(const News& news);
+    void remember_chain(const Keyframe& keyframe);
     void publish(const Keyframe& keyframe);
     void publish_look(const OdometryResult& result, std::span<const PlanarRegion> regions);
     void on_status(const messages::RawMessage& message);
@@ -88,15 +89,18 @@ class OdometryShell : public messages::Shell {
     std::deque<Waiting> waiting_;
     std::deque<messages::FrameRegions>
         early_regions_;  ///< of frames that have not come yet; at most kMaxWaiting
-    /// The first that was published, by which a trajectory tells the world's frame from ours.
-    struct FirstKeyframe {
+    /// The first keyframe of an odom frame, by which a trajectory says how that lies in the world.
+    struct Start {
         int id;
         std::int64_t utime;
         Pose odom_from_camera;
     };
     BodyFrame body_;
     Looks looks_;
-    std::optional<FirstKeyframe> first_keyframe_;
+    std::optional<Start> first_keyframe_;
+    int first_chain_ = -1;                 ///< of that one
+    std::map<int, Start> apart_;           ///< by chain: those of which it is not known how they lie
+    std::map<int, Pose> first_from_odom_;  ///< by chain: those of which it is
     std::optional<Pose> odom_from_world_;
     std::optional<std::int64_t> frames_told_utime_;  ///< frame with which the body's frames were told last
     std::optional<std::int64_t> handled_utime_;      ///< of the last frame that was handled

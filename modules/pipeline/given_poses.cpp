@@ -28,7 +28,8 @@ void GivenPoses::on_keyframe(const messages::RawMessage& message) {
         ++missing_;
         return;
     }
-    keyframes_.keyframes.push_back({keyframe.id, keyframe.utime, *pose});
+    const int component = keyframes_.keyframes.empty() ? keyframe.id : keyframes_.keyframes.front().id;
+    keyframes_.keyframes.push_back({keyframe.id, keyframe.utime, *pose, component});
     keyframes_.utime = keyframe.utime;
     bus_.publish(messages::channels::kTrajectory, messages::to_message(keyframes_, seq_++));
 }

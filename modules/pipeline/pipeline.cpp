@@ -67,16 +67,19 @@ const KeyframeTrajectory& Pipeline::keyframes() const {
 }
 
 Trajectory Pipeline::trajectory() const {
+    return trajectories().front().trajectory;
+}
+
+std::vector<ComponentTrajectory> Pipeline::trajectories() const {
     if (given_poses_) {
         Trajectory trajectory;
         for (const OdometryEstimate& estimate : estimates_) {
             const auto pose = given_pose(given_poses_->poses(), estimate.pose_utime);
             if (pose) trajectory.push_back({estimate.pose_utime, *pose});
         }
-        return trajectory;
+        return {{largest_component(given_poses_->keyframes()), std::move(trajectory)}};
     }
-    const Pose world_from_odom = graph_ ? graph_->graph().trajectory().world_from_odom : Pose::Identity();
-    return place_frames(estimates_, poses_, world_from_odom);
+    return place_frames(estimates_, poses_, graph_ ? graph_->graph().trajectory() : KeyframeTrajectory());
 }
 
 std::optional<std::string> Pipeline::reason_lost() {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/frame_poses.hpp"
 #include "core/keyframe.hpp"
 #include "core/replacement.hpp"
 #include "core/trajectory.hpp"
@@ -51,9 +52,11 @@ class Pipeline {
     const std::vector<OdometryEstimate>& estimates() const { return estimates_; }
     /// World poses of the keyframes: the graph's, or the given ones. Precondition: one of both.
     const KeyframeTrajectory& keyframes() const;
-    /// World poses of all tracked frames after graph optimisation, at the moments that they are of; without
-    /// a graph their poses in the odom frame, with given poses these.
+    /// World poses of the tracked frames of the largest component after graph optimisation, at the moments
+    /// that they are of; without a graph their poses in the odom frame, with given poses these.
     Trajectory trajectory() const;
+    /// The same of all components, the largest first; at least one.
+    std::vector<ComponentTrajectory> trajectories() const;
 
     /// Why most frames that were not tracked were not, where that is known: a clause.
     std::optional<std::string> reason_lost();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "viewer/viewer_shell.hpp"
 
+#include "core/components.hpp"
 #include "core/validation.hpp"
 #include "messages/channels.hpp"
 #include "messages/decode.hpp"
@@ -41,7 +42,8 @@ void ViewerShell::subscribe_collections() {
     take(channels::kMap,
          [this](const auto& m) { map_ = messages::from_message(messages::decode<plane_map_t>(m.bytes)); });
     take(channels::kTrajectory, [this](const auto& m) {
-        trajectory_ = messages::from_message(messages::decode<trajectory_t>(m.bytes));
+        const auto all = messages::from_message(messages::decode<trajectory_t>(m.bytes));
+        trajectory_ = of_component(all, largest_component(all));  // as PLANEMAP_MAP
     });
     take(channels::kLocalFromOdom, [this](const auto& m) {
         local_from_odom_ = messages::from_message(messages::decode<bot_core::rigid_transform_t>(m.bytes));

@@ -11,7 +11,7 @@ namespace planemap::test {
 
 /// A keyframe that saw nothing.
 inline graph::KeyframeNode bare_node(int id, const Pose& odom_from_camera = Pose::Identity()) {
-    return {id, 1000 * id, odom_from_camera, {}};
+    return {id, 1000 * id, -1, odom_from_camera, {}};
 }
 
 /// Keyframes of a walk at their true poses, each tied to the one before by what odometry measured.
@@ -27,7 +27,8 @@ struct GraphParts {
                 graph::odometry_tie({}, node - 1, node, keyframe.previous_from_camera, keyframe.covariance));
         }
         keyframes.add(
-            {keyframe.id, keyframe.utime, keyframe.odom_from_camera, graph::make_view(keyframe, 600)},
+            {keyframe.id, keyframe.utime, keyframe.chain, keyframe.odom_from_camera,
+             graph::make_view(keyframe, 600)},
             world_from_camera, node - 1);
     }
 };

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <set>
 #include <stdexcept>
 
 #include "graph/synthetic.hpp"
@@ -319,14 +320,69 @@ TEST_F(GraphTest, ALostStretchIsTiedInByALoopClosureAlone) {
     EXPECT_LT(rms_error(graph.trajectory(), poses), 0.1);
 }
 
-TEST_F(GraphTest, AnEdgeFromAKeyframeThatNeverArrivedCountsAsALoss) {
-    const Walk walk = test::walk(room_, square_loop(3, 12, 1.2), random_);
+/// The components that the trajectory names.
+std::set<int> components_of(const PoseGraph& graph) {
+    std::set<int> all;
+    for (const KeyframePose& keyframe : graph.trajectory().keyframes) all.insert(keyframe.component);
+    return all;
+}
+
+GraphOptions without_closures() {
+    GraphOptions options;
+    options.max_closures = 0;
+    return options;
+}
+
+TEST_F(GraphTest, KeyframesThatNeverArrivedAreSpannedByTheOdomFrame) {
+    Walk walk = test::walk(room_, square_loop(3, 12, 0.5), random_);
+    for (Keyframe& keyframe : walk.keyframes) keyframe.chain = 0;
     PoseGraph graph;
     for (const Keyframe& keyframe : walk.keyframes) {
         if (keyframe.id != 7 && keyframe.id != 8) graph.add(keyframe);
     }
     expect_consistent(graph.trajectory());
     EXPECT_EQ(graph.trajectory().keyframes.size(), walk.keyframes.size() - 2);
+    EXPECT_EQ(components_of(graph), std::set<int>{0});
+}
+
+TEST_F(GraphTest, AnEdgeFromAKeyframeThatNeverArrivedOfAChainThatNeverDidCountsAsALoss) {
+    Walk walk = test::walk(room_, square_loop(3, 12, 0.5), random_);
+    for (Keyframe& keyframe : walk.keyframes) keyframe.chain = keyframe.id < 7 ? 0 : 7;
+    PoseGraph graph(without_closures());
+    for (const Keyframe& keyframe : walk.keyframes)
+        if (keyframe.id != 7) graph.add(keyframe);
+    expect_consistent(graph.trajectory());
+    EXPECT_EQ(components_of(graph), (std::set<int>{0, 8}));
+}
+
+TEST_F(GraphTest, ALossBeginsAComponentUntilALoopClosureTiesIt) {
+    const auto poses = square_loop(3, 12, 1.3);
+    Walk walk = test::walk(room_, poses, random_);
+    walk.keyframes[20].previous_id = -1;
+    PoseGraph graph, apart(without_closures());
+    for (const Keyframe& keyframe : walk.keyframes) {
+        graph.add(keyframe);
+        apart.add(keyframe);
+    }
+    for (const KeyframePose& named : apart.trajectory().keyframes)
+        EXPECT_EQ(named.component, named.id < 20 ? 0 : 20);
+    EXPECT_EQ(components_of(graph), std::set<int>{0});
+}
+
+TEST_F(GraphTest, WhereTimeGoesBackNothingIsKnownOfTheWay) {
+    const auto poses = square_loop(3, 12, 1.3);
+    Walk walk = test::walk(room_, poses, random_);
+    // The sensor started again 5 m away.
+    const Pose wrong = pose_from_twist((Twist() << 5, 0, 0, 0, 1, 0).finished());
+    walk.keyframes[20].previous_id = -1;
+    for (std::size_t i = 20; i < walk.keyframes.size(); ++i) {
+        walk.keyframes[i].odom_from_camera = orthonormalised(wrong * walk.keyframes[i].odom_from_camera);
+        walk.keyframes[i].utime -= walk.keyframes[20].utime;
+    }
+    PoseGraph graph;
+    for (const Keyframe& keyframe : walk.keyframes) graph.add(keyframe);
+    EXPECT_EQ(components_of(graph), std::set<int>{0}) << "true loop closures are not refused";
+    EXPECT_LT(rms_error(graph.trajectory(), poses), 0.1);
 }
 
 /// Largest distance of a kept keyframe to where it truly stood.

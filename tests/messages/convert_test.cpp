@@ -192,12 +192,20 @@ TEST(Convert, TrajectoryRoundTripAndOrder) {
     trajectory.revision = 4;
     trajectory.loop_closures = 2;
     trajectory.keyframes = {{0, 10, Pose::Identity()},
-                            {5, 20, make_pose({1, 0, 0}, Eigen::Quaterniond(1, 1, 0, 0))}};
+                            {5, 20, make_pose({1, 0, 0}, Eigen::Quaterniond(1, 1, 0, 0)), 4}};
     const KeyframeTrajectory back = from_message(to_message(trajectory, 1));
     ASSERT_EQ(back.keyframes.size(), 2u);
     EXPECT_EQ(back.keyframes[1].id, 5);
     EXPECT_TRUE(
         back.keyframes[1].world_from_camera.isApprox(trajectory.keyframes[1].world_from_camera, 1e-12));
+    EXPECT_EQ(back.keyframes[0].component, 0);
+    EXPECT_EQ(back.keyframes[1].component, 4);
+    trajectory_t odd = to_message(trajectory, 1);
+    odd.n_components = 1;
+    EXPECT_THROW(from_message(odd), MessageError);
+    trajectory.keyframes[1].component = 6;
+    EXPECT_THROW(from_message(to_message(trajectory, 1)), MessageError);
+    trajectory.keyframes[1].component = 4;
     std::swap(trajectory.keyframes[0], trajectory.keyframes[1]);
     EXPECT_THROW(from_message(to_message(trajectory, 1)), MessageError);
 }

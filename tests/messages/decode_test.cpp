@@ -110,7 +110,7 @@ TEST(Decode, AnEarlierTypesMessageIsTakenAndADamagedOneIsRefused) {
     map.inferred.clear();
     const std::vector<std::uint8_t> today = encoded(to_message(map, 7));
     ASSERT_EQ(fingerprints<plane_map_t>().size(), 3u);
-    for (const auto& [number, missing] : {std::pair(1, 4), std::pair(2, 12)}) {  // n_inferred; session, too
+    for (const auto& [number, missing] : {std::pair(1, 8), std::pair(2, 16)}) {  // n_inferred, component; session, too
         std::vector<std::uint8_t> earlier = today;
         earlier.resize(earlier.size() - static_cast<std::size_t>(missing));
         const std::uint64_t fingerprint = fingerprints<plane_map_t>().at(static_cast<std::size_t>(number));
@@ -122,6 +122,26 @@ TEST(Decode, AnEarlierTypesMessageIsTakenAndADamagedOneIsRefused) {
         for (std::size_t length = 0; length < earlier.size(); ++length)
             EXPECT_THROW(decode<plane_map_t>(std::span(earlier).first(length)), MessageError) << length;
     }
+}
+
+TEST(Decode, BeforeThereWereComponentsAllHungTogether) {
+    KeyframeTrajectory trajectory = sample_trajectory();
+    std::vector<std::uint8_t> bytes = encoded(to_message(trajectory, 1));
+    bytes.resize(bytes.size() - 4 - 4 * trajectory.keyframes.size());
+    ASSERT_EQ(fingerprints<trajectory_t>().size(), 2u);
+    for (std::size_t i = 0; i < 8; ++i)
+        bytes[i] = static_cast<std::uint8_t>(fingerprints<trajectory_t>()[1] >> (56 - 8 * i));
+    const KeyframeTrajectory back = from_message(decode<trajectory_t>(bytes));
+    ASSERT_EQ(back.keyframes.size(), trajectory.keyframes.size());
+    for (const KeyframePose& keyframe : back.keyframes)
+        EXPECT_EQ(keyframe.component, trajectory.keyframes.front().id);
+
+    bytes = encoded(to_message(test::sample_keyframe(), 1));
+    bytes.resize(bytes.size() - 4);
+    ASSERT_EQ(fingerprints<keyframe_t>().size(), 2u);
+    for (std::size_t i = 0; i < 8; ++i)
+        bytes[i] = static_cast<std::uint8_t>(fingerprints<keyframe_t>()[1] >> (56 - 8 * i));
+    EXPECT_EQ(from_message(decode<keyframe_t>(bytes)).chain, -1);
 }
 
 TEST(Decode, HugeLengthIsRefusedBeforeAllocation) {

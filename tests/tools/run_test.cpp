@@ -43,7 +43,7 @@ TEST_F(RunTest, WritesEverythingAndTheSameBytesAgain) {
     }
     const Json r = report("a");
     for (const char* key : {"input", "frames", "tracked", "lost", "stale", "degenerate", "keyframes",
-                            "loop_closures", "planes", "wall_s", "cpu_s", "peak_rss_mb"}) {
+                            "loop_closures", "planes", "components", "wall_s", "cpu_s", "peak_rss_mb"}) {
         EXPECT_TRUE(r.contains(key)) << key;
     }
     for (const char* stage : {"decode", "segmentation", "odometry", "graph", "map", "octomap"}) {
@@ -475,6 +475,54 @@ TEST_F(RunTest, TheFloorOfFr3CabinetIsOnePlane) {
     EXPECT_EQ(floors, 1);
     EXPECT_LT(floor_angle, 3.0);
     EXPECT_LT(std::abs(floor_height), 0.15) << "at the floor's middle, some metres from the first camera";
+}
+
+TEST_F(RunTest, WhatDoesNotHangTogetherIsNotPutTogether) {
+    // The camera is carried from the office to the building while nobody sees.
+    constexpr std::int64_t kPause_us = 5000000;
+    std::int64_t last = 0;
+    messages::LogWriter joined(folder_ / "joined.lcmlog");
+    for (const char* world : {"building", "office"}) {
+        const std::string log = path(std::string(world) + "/frames.lcmlog");
+        const std::string frames = world == std::string("office") ? "60" : "40";
+        ASSERT_EQ(run("planemap-simulate", "'sim:" + std::string(world) + "?frames=" + frames +
+                                               "&width=320&height=240&rate=15' --output " + log)
+                      .exit_code,
+                  0);
+        messages::LogReader reader(log);
+        const std::int64_t shift = last == 0 ? 0 : last + kPause_us;
+        for (messages::LogEvent event; reader.next(event);) {
+            event.utime += shift;
+            if (event.channel == messages::channels::kFrame) {
+                auto images = messages::decode<bot_core::images_t>(event.bytes);
+                images.utime += shift;
+                for (bot_core::image_t& image : images.images) image.utime += shift;
+                event.bytes = messages::to_bytes(images);
+                if (shift == 0) last = images.utime;
+            }
+            joined.write(event);
+        }
+    }
+    joined.close();
+    const Result result = run("planemap-run", path("joined.lcmlog") + " --output " + path("out"));
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const Json r = report("out");
+    const Json& components = r.at("components");
+    ASSERT_EQ(components.size(), 2u) << components;
+    EXPECT_EQ(r.at("tracked").get<int>(),
+              components[0].at("frames").get<int>() + components[1].at("frames").get<int>());
+    EXPECT_GE(components[0].at("keyframes"), components[1].at("keyframes"));
+    EXPECT_NE(components[0].at("component"), components[1].at("component"));
+    EXPECT_NE(result.out.find("2 components do not hang together"), std::string::npos);
+    for (int i = 0; i < 2; ++i) {
+        const std::string suffix = i == 0 ? "" : "_2";
+        const auto count = components[static_cast<std::size_t>(i)].at("frames").get<std::size_t>();
+        EXPECT_EQ(read_trajectory(folder_ / "out" / ("trajectory" + suffix + ".txt")).size(), count);
+        const Json planes = Json::parse(read_file(folder_ / "out" / ("planes" + suffix + ".json")));
+        EXPECT_EQ(planes.at("planes").size(),
+                  components[static_cast<std::size_t>(i)].at("planes").get<std::size_t>());
+        EXPECT_TRUE(std::filesystem::exists(folder_ / "out" / ("plane_map" + suffix + ".lcmlog")));
+    }
 }
 
 TEST_F(RunTest, AColourStreamThatStandsStillDragsNothingAlong) {

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/components.hpp"
 #include "core/files.hpp"
 #include "map/map_file.hpp"
 #include "run/report.hpp"
@@ -11,22 +12,22 @@ namespace planemap {
 
 namespace {
 
-Result text_result(const char* name, std::function<std::string()> bytes) {
+Result text_result(const std::string& name, std::function<std::string()> bytes) {
     return {name, [bytes = std::move(bytes)](const auto& file) { write_file(file, bytes()); }};
 }
 
 }  // namespace
 
-std::vector<Result> essential_results(const MapSource& source) {
+std::vector<Result> essential_results(const MapSource& source, std::size_t number) {
     const std::shared_ptr<const PlaneMap> map = source.map;
     std::vector<Result> results{
-        {"plane_map.lcmlog", [map](const auto& file) { map::write_plane_map(file, *map); }}};
+        {component_file("plane_map.lcmlog", number), [map](const auto& file) { map::write_plane_map(file, *map); }}};
     if (source.trajectory) {
-        results.push_back({"trajectory.txt", [trajectory = source.trajectory](const auto& file) {
+        results.push_back({component_file("trajectory.txt", number), [trajectory = source.trajectory](const auto& file) {
                                write_trajectory(file, trajectory());
                            }});
     }
-    results.push_back(text_result("planes.json", [map, sightings = source.sightings] {
+    results.push_back(text_result(component_file("planes.json", number), [map, sightings = source.sightings] {
         return exports::planes_json(*map, sightings());
     }));
     return results;
@@ -61,9 +62,13 @@ std::vector<Result> report_results(const nlohmann::ordered_json& report) {
 }
 
 std::vector<std::string> map_result_names() {
-    return {"plane_map.lcmlog", "trajectory.txt",     "planes.json",  "report.json",
-            "report.md",        "planes.ply",         "planes.obj",   "planes.mtl",
-            "planes.glb",       "floor_plan.geojson", "overhead.svg", "map.svg"};
+    std::vector<std::string> names{"report.json", "report.md",  "planes.ply",         "planes.obj",
+                                   "planes.mtl",  "planes.glb", "floor_plan.geojson", "overhead.svg",
+                                   "map.svg"};
+    for (std::size_t number = 1; number <= kMostComponentFiles; ++number)
+        for (const char* name : {"plane_map.lcmlog", "trajectory.txt", "planes.json"})
+            names.push_back(component_file(name, number));
+    return names;
 }
 
 }  // namespace planemap

@@ -16,7 +16,7 @@
 
 namespace planemap {
 
-/// A map and what is known beside it.
+/// The map of one component and what is known beside it.
 struct MapSource {
     std::shared_ptr<const PlaneMap> map;
     std::function<Trajectory()> trajectory;  ///< asked when a file needs it; empty: not known
@@ -24,7 +24,8 @@ struct MapSource {
 };
 
 /// What nobody wants to lose, small: plane_map.lcmlog, trajectory.txt where it is known, planes.json.
-std::vector<Result> essential_results(const MapSource& source);
+/// Of a component after the first their names bear its number (component_file()).
+std::vector<Result> essential_results(const MapSource& source, std::size_t number = 1);
 
 /// What can be had from the essential results: planes.ply, .obj, .mtl and .glb, the floor plan, the drawings.
 std::vector<Result> drawn_results(const MapSource& source);
@@ -32,7 +33,7 @@ std::vector<Result> drawn_results(const MapSource& source);
 /// report.json and report.md; nothing if the report is null.
 std::vector<Result> report_results(const nlohmann::ordered_json& report);
 
-/// The names of all of them.
+/// The names of all of them, of as many components as can be.
 std::vector<std::string> map_result_names();
 
 }  // namespace planemap

@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "core/components.hpp"
 #include "core/files.hpp"
 #include "evaluate/soundness_report.hpp"
 #include "map/map_file.hpp"
@@ -76,19 +78,26 @@ std::int64_t tracked_frames(const pipeline::Pipeline& pipeline) {
 
 namespace {
 
-MapSource map_source(pipeline::Pipeline& pipeline) {
-    const map::PlaneMapper& mapper = pipeline.map().mapper();
+/// Of the component with this number in the order of size, from 0.
+MapSource map_source(pipeline::Pipeline& pipeline, std::size_t component = 0) {
+    const map::PlaneMapper& mapper = *pipeline.map().maps().all().at(component);
     // As the stored map says it: what is exported from that later is the same to the last digit.
     auto stored =
         std::make_shared<const PlaneMap>(messages::from_message(messages::to_message(mapper.map(), 0)));
-    return {std::move(stored), [&pipeline] { return pipeline.trajectory(); },
+    return {std::move(stored),
+            [&pipeline, component] { return pipeline.trajectories().at(component).trajectory; },
             [&mapper] { return mapper.sightings(); }};
 }
 
 }  // namespace
 
 std::vector<Result> essential_results(pipeline::Pipeline& pipeline) {
-    return essential_results(map_source(pipeline));
+    std::vector<Result> results;
+    const std::size_t components = std::min(pipeline.map().maps().all().size(), kMostComponentFiles);
+    for (std::size_t i = 0; i < components; ++i)
+        for (Result& result : essential_results(map_source(pipeline, i), i + 1))
+            results.push_back(std::move(result));
+    return results;
 }
 
 namespace {
@@ -121,6 +130,29 @@ Json depth_off(pipeline::Pipeline& pipeline) {
             {"noise_m", camera->noise.sigma(kRange_m)}};
 }
 
+/// What hangs together and what does not, the largest first: all other figures, and the pictures, are of that.
+Json components_of(pipeline::Pipeline& pipeline) {
+    std::map<int, std::size_t> keyframes;
+    for (const KeyframePose& keyframe : pipeline.keyframes().keyframes) ++keyframes[keyframe.component];
+    const std::vector<const map::PlaneMapper*> maps = pipeline.map().maps().all();
+    const std::vector<ComponentTrajectory> trajectories = pipeline.trajectories();
+    Json components = Json::array();
+    for (std::size_t i = 0; i < std::min(maps.size(), trajectories.size()); ++i) {
+        const ComponentTrajectory& part = trajectories[i];
+        const auto time = [](const StampedPose& pose) { return static_cast<double>(pose.utime / 1000) / 1000; };
+        Json& component = components.emplace_back();
+        component["component"] = part.component;
+        component["keyframes"] = keyframes[part.component];
+        component["frames"] = part.trajectory.size();
+        component["planes"] = maps[i]->map().planes.size();
+        component["from_s"] = part.trajectory.empty() ? Json() : Json(time(part.trajectory.front()));
+        component["to_s"] = part.trajectory.empty() ? Json() : Json(time(part.trajectory.back()));
+        component["trajectory"] =
+            i < kMostComponentFiles ? Json(component_file("trajectory.txt", i + 1)) : Json();
+    }
+    return components;
+}
+
 Json report_of(const std::string& input_name, const Input& input, pipeline::Pipeline& pipeline,
                const DepthWatch& depth, const RunClock& clock, const Json& about) {
     const PlaneMap& map = pipeline.map().mapper().map();
@@ -142,6 +174,7 @@ Json report_of(const std::string& input_name, const Input& input, pipeline::Pipe
     report["interrupted"] = !input.is_at_end();
     report["keyframes"] = keyframes.keyframes.size();
     report["loop_closures"] = keyframes.loop_closures;
+    report["components"] = components_of(pipeline);
     report["planes"] = map.planes.size();
     report["up"] = {{"direction", up_of(map)}, {"why", pipeline.map().mapper().why_up()}};
     report["depth_off"] = depth_off(pipeline);

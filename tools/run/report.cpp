@@ -55,6 +55,21 @@ void add_tracking(const Json& report, std::string& out) {
     out += count("frames") + " frames: " + count("tracked") + " tracked, " + count("lost") + " lost, " +
            count("broken") + " broken. " + count("keyframes") + " keyframes, " + count("loop_closures") +
            " loop closures, " + count("planes") + " planes.\n\n";
+    if (report.contains("components") && report["components"].size() > 1) {
+        const Json& components = report["components"];
+        out += std::to_string(components.size()) +
+               " components do not hang together: tracking was lost, or time or the sensor started again, and "
+               "no loop closure tied them. Where one lies in another is not known. What follows, and the "
+               "pictures, are of the largest.\n\n| component | keyframes | frames | planes | from s | to s "
+               "| trajectory |\n| --- | --- | --- | --- | --- | --- | --- |\n";
+        for (const Json& component : components) {
+            for (const char* key : {"component", "keyframes", "frames", "planes", "from_s", "to_s"})
+                out += "| " + (component.at(key).is_null() ? "-" : component.at(key).dump()) + " ";
+            const Json& file = component.at("trajectory");
+            out += "| " + (file.is_null() ? "-" : file.get<std::string>()) + " |\n";
+        }
+        out += "\n";
+    }
     if (report.value("degenerate", 0) > 0)
         out += "In " + count("degenerate") + " frames a direction is known by the prediction alone.\n\n";
     if (report.value("stale", 0) > 0) {

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "map/component_maps.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/components.hpp"
+
+namespace planemap::map {
+
+namespace {
+constexpr std::size_t kMaxWaiting = 4096, kMaxWaitingLooks = 64;
+}
+
+ComponentMaps::ComponentMaps(const MapOptions& options) : options_(options) {
+    maps_.try_emplace(kNotNamed, options_, ids_, told_);
+    order_ = {kNotNamed};
+    // A component that is joined later moves as a whole: what is folded could not.
+    options_.fold_after = 0;
+}
+
+void ComponentMaps::start_from(const PlaneMap& map) {
+    maps_.begin()->second.start_from(map);
+}
+
+void ComponentMaps::add(const Keyframe& keyframe) {
+    const auto known = component_of_.find(keyframe.id);
+    if (known == component_of_.end()) return wait(keyframe);
+    map_of(known->second).add(keyframe);
+}
+
+void ComponentMaps::wait(const Keyframe& keyframe) {
+    if (is_far_ahead(keyframe.id, newest_id_)) {
+        ++losses_.keyframes_far_ahead;
+        return;
+    }
+    newest_id_ = std::max(newest_id_, keyframe.id);
+    told_->came(keyframe.id, keyframe.utime);
+    if (const auto earlier = waiting_.find(keyframe.id);
+        earlier != waiting_.end() && earlier->second.keyframe.utime == keyframe.utime) {
+        ++losses_.keyframes_again;
+        return;
+    }
+    Waiting& waiting = waiting_[keyframe.id] = {keyframe, {}};
+    waiting.keyframe.features = {};
+    if (waiting_.size() <= kMaxWaiting) return;
+    waiting_.erase(waiting_.begin());
+    ++losses_.keyframes_unplaced;
+}
+
+bool ComponentMaps::add(const Look& look) {
+    if (const auto waiting = waiting_.find(look.keyframe_id); waiting != waiting_.end()) {
+        if (waiting->second.looks.size() < kMaxWaitingLooks)
+            waiting->second.looks.push_back(look);
+        else
+            ++losses_.looks_refused;
+        return false;
+    }
+    for (auto& [component, map] : maps_)
+        if (map.knows(look)) return map.add(look);
+    ++losses_.looks_refused;
+    return false;
+}
+
+void ComponentMaps::update(const KeyframeTrajectory& trajectory) {
+    if (trajectory.keyframes.empty()) return;
+    if (auto first = maps_.extract(kNotNamed)) {
+        first.key() = trajectory.keyframes.front().component;
+        maps_.insert(std::move(first));
+    }
+    join(trajectory);
+    order_ = components(trajectory);
+    component_of_.clear();
+    for (const KeyframePose& keyframe : trajectory.keyframes) {
+        component_of_[keyframe.id] = keyframe.component;
+        if (const auto came = waiting_.find(keyframe.id); came != waiting_.end()) {
+            map_of(keyframe.component).add(came->second.keyframe);
+            for (const Look& look : came->second.looks) map_of(keyframe.component).add(look);
+            waiting_.erase(came);
+        }
+    }
+    for (const int component : order_) map_of(component).update(of_component(trajectory, component));
+}
+
+/// Maps of components that are part of another one now go over to that.
+void ComponentMaps::join(const KeyframeTrajectory& trajectory) {
+    std::map<int, int> now_in;  // by the component before
+    for (const KeyframePose& keyframe : trajectory.keyframes)
+        if (const auto before = component_of_.find(keyframe.id); before != component_of_.end())
+            now_in[before->second] = keyframe.component;
+    for (const auto& [before, now] : now_in) {
+        const auto joined = maps_.find(before);
+        if (before == now || joined == maps_.end()) continue;
+        PlaneMapper map = std::move(joined->second);
+        maps_.erase(joined);
+        map_of(now).absorb(std::move(map));
+    }
+}
+
+PlaneMapper& ComponentMaps::map_of(int component) {
+    return maps_.try_emplace(component, options_, ids_, told_).first->second;
+}
+
+void ComponentMaps::restore_ids(const Surfaces& surfaces) {
+    for (auto& [component, map] : maps_) map.restore_ids(surfaces);
+}
+
+void ComponentMaps::settle() {
+    for (auto& [component, map] : maps_) map.settle();
+}
+
+std::vector<const PlaneMapper*> ComponentMaps::all() const {
+    std::vector<const PlaneMapper*> all;
+    for (const int component : order_) all.push_back(&maps_.at(component));
+    return all;
+}
+
+Surfaces ComponentMaps::surfaces() const {
+    Surfaces surfaces;
+    for (const auto& [component, map] : maps_) {
+        Surfaces more = map.surfaces();
+        surfaces.utime = std::max(surfaces.utime, more.utime);
+        surfaces.keyframes.insert(surfaces.keyframes.end(), more.keyframes.begin(), more.keyframes.end());
+    }
+    std::sort(surfaces.keyframes.begin(), surfaces.keyframes.end(),
+              [](const auto& a, const auto& b) { return a.id < b.id; });
+    return surfaces;
+}
+
+MapLosses ComponentMaps::losses() const {
+    MapLosses losses = losses_;
+    for (const auto& [component, map] : maps_) losses += map.losses();
+    return losses;
+}
+
+bool ComponentMaps::has_keyframe(int id) const {
+    return waiting_.contains(id) || std::any_of(maps_.begin(), maps_.end(), [&](const auto& entry) {
+               return entry.second.has_keyframe(id);
+           });
+}
+
+std::size_t ComponentMaps::keyframes() const {
+    std::size_t keyframes = waiting_.size();
+    for (const auto& [component, map] : maps_) keyframes += map.keyframes();
+    return keyframes;
+}
+
+std::size_t ComponentMaps::rebuilds() const {
+    std::size_t rebuilds = 0;
+    for (const auto& [component, map] : maps_) rebuilds += map.rebuilds();
+    return rebuilds;
+}
+
+std::size_t ComponentMaps::working_bytes() const {
+    std::size_t bytes = waiting_.size() * sizeof(Waiting);
+    for (const auto& [component, map] : maps_) bytes += map.working_bytes();
+    return bytes;
+}
+
+}  // namespace planemap::map
