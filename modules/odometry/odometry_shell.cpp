@@ -15,6 +15,8 @@ namespace planemap::odometry {
 
 namespace {
 
+constexpr std::size_t kMostApart = 64;  // odom frames beside the first that are known
+
 std::string text_of(const OdometryEstimate& estimate) {
     if (estimate.status == TrackingStatus::kLost) return "lost";
     if (estimate.status == TrackingStatus::kStale) return "stale: nothing new says where it is";
@@ -250,7 +252,6 @@ void OdometryShell::process(const Waiting& input) {
 
 /// The first keyframe of each odom frame, by which a trajectory says how they lie about each other.
 void OdometryShell::remember_chain(const Keyframe& keyframe) {
-    constexpr std::size_t kMostApart = 64;
     const Start start{keyframe.id, keyframe.utime, keyframe.odom_from_camera};
     if (!first_keyframe_) {
         first_keyframe_ = start;
@@ -282,6 +283,7 @@ void OdometryShell::on_trajectory(const messages::RawMessage& message) {
             *odom_from_world_ * pose->world_from_camera * start.odom_from_camera.inverse(Eigen::Isometry);
         return true;
     });
+    while (first_from_odom_.size() > kMostApart) first_from_odom_.erase(first_from_odom_.begin());
 }
 
 void OdometryShell::on_map(const messages::RawMessage& message) {
@@ -290,21 +292,22 @@ void OdometryShell::on_map(const messages::RawMessage& message) {
     if (!up.isZero()) body_.hear_up(odom_from_world_->linear() * up.cast<double>());
 }
 
-/// POSE_BODY, and once a second of the frames' time how its frames lie about ours, for those who come late. After
-/// a loss it is silent until a loop closure says how the odom frame lies about the first one.
+/// POSE_BODY, and once a second of the frames' time how its frames lie about ours, for those who come late.
+/// After a loss it is silent until a loop closure says how the odom frame lies about the first one.
 void OdometryShell::publish_body(OdometryEstimate estimate, const CameraInfo& camera) {
     if (!is_tracked(estimate.status)) return;
-    if (estimate.chain != first_chain_) {
-        const auto known = first_from_odom_.find(estimate.chain);
-        status_.remark("body frame", known != first_from_odom_.end()
-                                         ? std::string()
-                                         : "POSE_BODY is silent: where the camera is, relative to where it "
-                                           "was before tracking was lost, is not known");
-        if (known == first_from_odom_.end()) return;
-        estimate.odom_from_camera = known->second * estimate.odom_from_camera;
-    } else {
-        status_.remark("body frame", "");
+    const auto known = first_from_odom_.find(estimate.chain);
+    const bool is_apart = estimate.chain != first_chain_ && known == first_from_odom_.end();
+    if (is_apart != is_silent_) {
+        is_silent_ = is_apart;
+        status_.remark("body frame", is_apart
+                                         ? "POSE_BODY is silent: where the camera is, relative to where it "
+                                           "was before tracking was lost, is not known"
+                                         : "");
     }
+    if (is_apart) return;
+    if (known != first_from_odom_.end())
+        estimate.odom_from_camera = known->second * estimate.odom_from_camera;
     body_.see(estimate, camera.body_from_camera);
     if (!body_.is_known()) return;
     bus_.publish(messages::channels::kPose,

@@ -100,7 +100,8 @@ class OdometryShell : public messages::Shell {
     std::optional<Start> first_keyframe_;
     int first_chain_ = -1;                 ///< of that one
     std::map<int, Start> apart_;           ///< by chain: those of which it is not known how they lie
-    std::map<int, Pose> first_from_odom_;  ///< by chain: those of which it is
+    std::map<int, Pose> first_from_odom_;  ///< by chain: those of which it is; the newest
+    bool is_silent_ = false;               ///< POSE_BODY is, since that is not known of the present one
     std::optional<Pose> odom_from_world_;
     std::optional<std::int64_t> frames_told_utime_;  ///< frame with which the body's frames were told last
     std::optional<std::int64_t> handled_utime_;      ///< of the last frame that was handled
