@@ -4,7 +4,9 @@
 # planemap_options: link it PRIVATE to each of our own targets, as $<BUILD_INTERFACE:planemap_options> where one is installed.
 add_library(planemap_options INTERFACE)
 target_include_directories(planemap_options INTERFACE ${CMAKE_SOURCE_DIR}/modules)
-target_compile_options(planemap_options INTERFACE -Wall -Wextra -Wconversion -Werror)
+# clang builds the sanitizers only, and what it calls -Wconversion holds more.
+target_compile_options(planemap_options INTERFACE -Wall -Wextra
+    "$<$<CXX_COMPILER_ID:GNU>:-Wconversion;-Werror>")
 
 # The instruction set is global: Eigen's alignment must be the same in every file that shares a type.
 if(PLANEMAP_NATIVE)
@@ -44,7 +46,7 @@ endfunction()
 function(planemap_use_precompiled target name)
     if(TARGET ${name})
         # GCC 12 warns of copies of strings in vain once their header is precompiled.
-        target_compile_options(${target} PRIVATE -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow)
+        target_compile_options(${target} PRIVATE "$<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds;-Wno-restrict;-Wno-stringop-overflow>")
         target_precompile_headers(${target} REUSE_FROM ${name})
     endif()
 endfunction()

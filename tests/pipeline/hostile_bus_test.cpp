@@ -17,8 +17,9 @@
 #include "octomap/octomap_shell.hpp"
 #include "odometry/odometry_shell.hpp"
 #include "pipeline/pipeline.hpp"
-#include "run/input.hpp"
 #include "segmentation/segmentation_shell.hpp"
+#include "sensor/sensor_shell.hpp"
+#include "sensor/source.hpp"
 
 namespace planemap::pipeline {
 namespace {
@@ -74,8 +75,11 @@ const Stream& walk() {
         PipelineOptions options;
         options.with_octomap = false;
         Pipeline pipeline(bus, options);
-        const auto input = open_input("sim:office?frames=40&width=320&height=240", bus);
-        while (input->feed()) pipeline.settle();
+        sensor::SensorShellOptions as_fast_as_it_can;
+        as_fast_as_it_can.speed = 0;
+        sensor::SensorShell sensor(bus, sensor::open_source("sim:office?frames=40&width=320&height=240"),
+                                   as_fast_as_it_can);
+        while (sensor.poll() >= 0) pipeline.settle();
         pipeline.settle();
         return stream;
     }();
