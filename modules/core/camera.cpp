@@ -6,6 +6,7 @@
 #include <sstream>
 #include <string>
 
+#include "core/lens_distortion.hpp"
 #include "core/number_text.hpp"
 #include "core/validation.hpp"
 
@@ -72,6 +73,13 @@ void check_units(const CameraInfo& camera, FieldErrors& errors) {
     }
 }
 
+void check_lenses(const CameraInfo& camera, FieldErrors& errors) {
+    if (camera.depth_distortion)
+        check_distortion(*camera.depth_distortion, camera.depth, "depth.distortion", errors);
+    if (camera.color_distortion)
+        check_distortion(*camera.color_distortion, camera.color, "color.distortion", errors);
+}
+
 /// Registration is for images of comparable resolution: beyond, a pixel of one camera is a blot on the
 /// other's image, and such numbers are more often a mistake than a sensor.
 void check_ratio(double depth, double color, const std::string& field, FieldErrors& errors) {
@@ -116,6 +124,7 @@ void CameraInfo::validate() const {
         errors.require(false, "serial", serial.substr(0, 64) + "...", "at most 64 characters");
     check(depth, "depth", errors);
     check(color, "color", errors);
+    check_lenses(*this, errors);
     check_ratio(depth.fx, color.fx, "fx", errors);
     check_ratio(depth.fy, color.fy, "fy", errors);
     errors.require(is_valid(color_from_depth), "color_from_depth", "not a rigid transform",
@@ -130,6 +139,7 @@ void CameraInfo::validate() const {
 
 bool operator==(const CameraInfo& a, const CameraInfo& b) {
     return a.serial == b.serial && a.depth == b.depth && a.color == b.color && a.registered == b.registered &&
+           a.depth_distortion == b.depth_distortion && a.color_distortion == b.color_distortion &&
            a.color_from_depth.matrix() == b.color_from_depth.matrix() &&
            a.depth_units_per_metre == b.depth_units_per_metre && a.depth_min_m == b.depth_min_m &&
            a.depth_max_m == b.depth_max_m && a.noise == b.noise && a.depth_correction == b.depth_correction &&

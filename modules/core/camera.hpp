@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/geometry/pose.hpp"
 #include "core/validation.hpp"
@@ -73,6 +74,20 @@ struct DepthCorrection {
     friend bool operator==(const DepthCorrection&, const DepthCorrection&) = default;
 };
 
+/// How a lens moves what a pinhole would draw, in OpenCV's models and the order of its coefficients, on
+/// ((u - cx) / fx, (v - cy) / fy); see lens_distortion.hpp.
+struct LensDistortion {
+    enum class Model {
+        kBrown,    ///< radial and tangential: k1 k2 p1 p2, then k3, then k4 k5 k6 (ROS: plumb_bob and
+                   ///< rational_polynomial)
+        kFisheye,  ///< by the angle to the axis: k1 k2 k3 k4 (ROS: equidistant)
+    };
+    Model model = Model::kBrown;
+    std::vector<double> coefficients;  ///< brown: 4, 5 or 8; fisheye: 4
+
+    friend bool operator==(const LensDistortion&, const LensDistortion&) = default;
+};
+
 /// Adds each field that no sensor's depth has, named as in CameraInfo: a range that is not finite, negative
 /// or empty; noise that is not finite, negative, below CameraLimits::kLeastSigma_m everywhere in the range,
 /// or beyond it.
@@ -81,12 +96,16 @@ void check_depth(const DepthNoise& noise, double min_m, double max_m, FieldError
 /// What an RGB-D sensor is: the project's "camera frame" is the optical frame of `color`. A sensor without
 /// colour has color equal to depth.
 struct CameraInfo {
-    std::string serial;                        ///< or a name that tells sensors apart; at most 64 characters
-    PinholeCamera depth;                       ///< of the depth image as it arrives
-    PinholeCamera color;                       ///< of the colour image as it arrives
-    bool registered = true;                    ///< each depth pixel already lies at its colour pixel
-    Pose color_from_depth = Pose::Identity();  ///< identity when registered
-    double depth_units_per_metre = 1000;       ///< raw depth / this = metres
+    std::string serial;   ///< or a name that tells sensors apart; at most 64 characters
+    PinholeCamera depth;  ///< of the depth image as it arrives
+    PinholeCamera color;  ///< of the colour image as it arrives
+    /// Of the images as they arrive; none: they are a pinhole's. They are undone where images are decoded
+    /// (see Undistortion), once: what comes after sees pinholes.
+    std::optional<LensDistortion> depth_distortion, color_distortion;
+    bool registered = true;                       ///< each depth pixel already lies at its colour pixel,
+                                                  ///< once both are undistorted
+    Pose color_from_depth = Pose::Identity();     ///< identity when registered
+    double depth_units_per_metre = 1000;          ///< raw depth / this = metres
     double depth_min_m = 0.3, depth_max_m = 8.0;  ///< readings outside are not trusted
     DepthNoise noise;
     std::optional<DepthCorrection> depth_correction;  ///< of its readings as they arrive; none: as they are
@@ -97,7 +116,7 @@ struct CameraInfo {
     double metres(std::uint16_t raw) const { return raw / depth_units_per_metre; }
     /// Throws std::invalid_argument that names every bad field (sizes 1 to 8192, what CameraLimits says, the
     /// depth camera's focal lengths 0.3 to 4 times the colour camera's, a depth range that 16 bits reach,
-    /// ...).
+    /// what check_distortion() says, ...).
     void validate() const;
 };
 

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/json_file.hpp"
+#include "core/lens_distortion.hpp"
 #include "core/nearest_name.hpp"
 #include "core/number_text.hpp"
 #include "core/sensor_preset.hpp"
@@ -113,6 +114,12 @@ class Reader {
         return result;
     }
 
+    /// Of a list; nothing if there is none.
+    std::optional<std::size_t> size_of(const char* key) const {
+        if (!has(key) || !object_[key].is_array()) return std::nullopt;
+        return object_[key].size();
+    }
+
     bool boolean(const char* key, bool fallback) const {
         if (!has(key)) return fallback;
         if (object_[key].is_boolean()) return object_[key].get<bool>();
@@ -149,7 +156,6 @@ class Reader {
     FieldErrors& errors_;
 };
 
-// Stands for what later versions read: taken, and told that it is not used yet.
 constexpr const char* kDistortion = "distortion";
 constexpr const char* kAccelerometer = "camera_from_accelerometer";
 
@@ -175,6 +181,36 @@ PinholeCamera read_pinhole(const Reader& reader) {
     camera.cx = reader.number("cx", centre(camera.width), true);
     camera.cy = reader.number("cy", centre(camera.height), true);
     return camera;
+}
+
+/// All numbers of a list, or nothing after an error; `allowed` says what it may be.
+std::optional<std::vector<double>> read_coefficients(const Reader& reader, LensDistortion::Model model) {
+    constexpr const char* kKey = "coefficients";
+    constexpr Bounds kAny{-1e6, 1e6};
+    std::string counts;
+    for (const std::size_t count : coefficient_counts(model))
+        counts += (counts.empty() ? "" : " or ") + std::to_string(count);
+    const std::string allowed = "a list of " + counts + " for " + name_of(model) + ", each " + kAny.text();
+    for (const std::size_t count : coefficient_counts(model))
+        if (reader.size_of(kKey) == count) return reader.numbers(kKey, count, kAny);
+    reader.has(kKey) ? reader.wrong(kKey, allowed) : reader.missing(kKey, allowed);
+    return std::nullopt;
+}
+
+/// Of the camera that `reader` reads.
+std::optional<LensDistortion> read_distortion(const Reader& reader) {
+    if (!reader.has(kDistortion)) return std::nullopt;
+    const Reader inner = reader.object(kDistortion, true);
+    inner.require_known({"model", "coefficients"});
+    const auto model = distortion_model(inner.text("model", 64));
+    if (!model) {
+        inner.has("model") ? inner.wrong("model", "brown or fisheye")
+                           : inner.missing("model", "brown or fisheye");
+        return std::nullopt;
+    }
+    const auto coefficients = read_coefficients(inner, *model);
+    if (!coefficients) return std::nullopt;
+    return LensDistortion{*model, *coefficients};
 }
 
 constexpr double kFarthestMount_m = 20;  // of a camera from its robot's origin
@@ -256,17 +292,21 @@ void read_units(const Reader& reader, CameraInfo& camera) {
 
 /// What stands in the file and is not used.
 std::vector<std::string> unused_keys(const Reader& reader, const CameraInfo& camera) {
-    std::vector<std::string> keys;
-    for (const char* part : {"", "depth_camera", "color_camera"}) {
-        const bool top = *part == '\0';
-        if (!top && !reader.has(part)) continue;
-        const Reader inner = top ? reader : reader.object(part, false);
-        if (inner.has(kDistortion)) keys.push_back(top ? kDistortion : std::string(part) + "." + kDistortion);
+    if (camera.registered && reader.has("color_from_depth")) return {"color_from_depth (registered is true)"};
+    return {};
+}
+
+/// Both cameras, each with its lens.
+void read_cameras(const Reader& reader, CameraInfo& camera) {
+    if (reader.has(kDistortion)) reader.wrong(kDistortion, "within depth_camera or color_camera");
+    const Reader depth = reader.object("depth_camera", true);
+    camera.depth = camera.color = read_pinhole(depth);
+    camera.depth_distortion = camera.color_distortion = read_distortion(depth);
+    if (reader.has("color_camera") || !camera.registered) {
+        const Reader color = reader.object("color_camera", true);
+        camera.color = read_pinhole(color);
+        camera.color_distortion = read_distortion(color);
     }
-    if (camera.registered && reader.has("color_from_depth")) {
-        keys.push_back("color_from_depth (registered is true)");
-    }
-    return keys;
 }
 
 CameraInfo read_camera(const Reader& reader) {
@@ -275,10 +315,8 @@ CameraInfo read_camera(const Reader& reader) {
                           "depth_correction", "note", "body_from_camera", kAccelerometer, kDistortion});
     CameraInfo camera;
     camera.serial = reader.text("serial", 64);
-    camera.depth = read_pinhole(reader.object("depth_camera", true));
     camera.registered = reader.boolean("registered", !reader.has("color_from_depth"));
-    const bool own_color = reader.has("color_camera") || !camera.registered;
-    camera.color = own_color ? read_pinhole(reader.object("color_camera", true)) : camera.depth;
+    read_cameras(reader, camera);
     if (!camera.registered || reader.has("color_from_depth")) {
         const Pose color_from_depth =
             read_transform(reader.object("color_from_depth", true), kFarthestCamera_m);
@@ -304,9 +342,11 @@ constexpr const char* kExample =
     R"({"depth_camera": {"width": 640, "height": 480, "fx": 525, "fy": 525, "cx": 319.5, "cy": 239.5}, )"
     R"("depth_units_per_metre": 1000, "registered": true})";
 
-nlohmann::ordered_json pinhole_json(const PinholeCamera& camera) {
-    return {{"width", camera.width}, {"height", camera.height}, {"fx", camera.fx},
-            {"fy", camera.fy},       {"cx", camera.cx},         {"cy", camera.cy}};
+nlohmann::ordered_json camera_json(const PinholeCamera& camera, const std::optional<LensDistortion>& lens) {
+    nlohmann::ordered_json json = {{"width", camera.width}, {"height", camera.height}, {"fx", camera.fx},
+                                   {"fy", camera.fy},       {"cx", camera.cx},         {"cy", camera.cy}};
+    if (lens) json[kDistortion] = {{"model", name_of(lens->model)}, {"coefficients", lens->coefficients}};
+    return json;
 }
 
 nlohmann::ordered_json transform_json(const Pose& transform) {
@@ -330,9 +370,10 @@ std::string with_depth_correction(const std::filesystem::path& file, const Depth
 std::string camera_file_text(const CameraInfo& camera) {
     nlohmann::ordered_json file;
     if (!camera.serial.empty()) file["serial"] = camera.serial;
-    file["depth_camera"] = pinhole_json(camera.depth);
-    if (!camera.registered || !(camera.color == camera.depth))
-        file["color_camera"] = pinhole_json(camera.color);
+    file["depth_camera"] = camera_json(camera.depth, camera.depth_distortion);
+    if (!camera.registered || !(camera.color == camera.depth) ||
+        camera.color_distortion != camera.depth_distortion)
+        file["color_camera"] = camera_json(camera.color, camera.color_distortion);
     file["depth_units_per_metre"] = camera.depth_units_per_metre;
     file["registered"] = camera.registered;
     if (!camera.registered) file["color_from_depth"] = transform_json(camera.color_from_depth);

@@ -12,7 +12,9 @@
 namespace planemap {
 
 /// Reads a camera.json:
-///   {"depth_camera": {"width": 640, "height": 480, "fx": 585, "fy": 585, "cx": 320, "cy": 240},
+///   {"depth_camera": {"width": 640, "height": 480, "fx": 585, "fy": 585, "cx": 320, "cy": 240,
+///                     "distortion": {"model": "brown", "coefficients": [k1, k2, p1, p2]}},   distortion is
+///                                          optional, see LensDistortion
 ///    "depth_units_per_metre": 1000,
 ///    "registered": false,                  optional: true if there is no color_from_depth
 ///    "color_camera": {...},                like depth_camera, which it defaults to if registered
@@ -27,8 +29,7 @@ namespace planemap {
 ///    "body_from_camera": {"rotation_vector_rad": [...], "translation_m": [...]},  optional: how the colour
 ///                                          camera is mounted on the robot (x forward, y left, z up)
 ///    "serial": "K1", "note": "...", "poses_of": "color_camera"}                 optional
-/// "distortion" (also within a camera) is known, but not used yet: a note says so, as of anything else that
-/// stands there in vain. Throws std::runtime_error if the file cannot be read, and
+/// A note says what stands there in vain. Throws std::runtime_error if the file cannot be read, and
 /// std::invalid_argument that names the file and every bad field at once: value and what is allowed; unknown
 /// keys with the nearest known one; syntax errors with line and column.
 CameraInfo read_camera_file(const std::filesystem::path& file, std::vector<std::string>* notes = nullptr);

@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/lens_distortion.hpp"
+
 namespace planemap {
 
 namespace {
@@ -53,6 +55,11 @@ FieldWeights field_weights(const PinholeCamera& depth, double u, double v) {
     return {
         {node, node + 1, node + kColumns, node + kColumns + 1},
         {(1 - x.share) * (1 - y.share), x.share * (1 - y.share), (1 - x.share) * y.share, x.share * y.share}};
+}
+
+FieldWeights field_weights(const CameraInfo& sensed, double u, double v) {
+    const Eigen::Vector2d place = sensed_pixel(sensed.depth, sensed.depth_distortion, {u, v});
+    return field_weights(sensed.depth, place.x(), place.y());
 }
 
 double offset_at(const DepthCorrection& correction, const PinholeCamera& depth, double u, double v) {

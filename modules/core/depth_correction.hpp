@@ -20,6 +20,10 @@ struct FieldWeights {
 /// The nodes around pixel (u, v) of the depth image; outside of it, of the nearest place in it.
 FieldWeights field_weights(const PinholeCamera& depth, double u, double v);
 
+/// The nodes around the reading that a pixel of the pinhole's image has: nodes lie in the image as it
+/// arrives, as the lens draws it.
+FieldWeights field_weights(const CameraInfo& sensed, double u, double v);
+
 /// Offset of inverse depth there, 1/metres: true inverse depth = sensed + offset.
 double offset_at(const DepthCorrection& correction, const PinholeCamera& depth, double u, double v);
 

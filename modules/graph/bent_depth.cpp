@@ -42,7 +42,7 @@ Eigen::Matrix<double, 3, kNodes> bending_of(const Sighting& sighting, const Came
             const Eigen::Vector3d direction = point / point.z();
             const Eigen::Vector2d pixel = camera.depth.project(point);
             if (!camera.depth.sees(pixel)) continue;
-            const FieldWeights field = field_weights(camera.depth, pixel.x(), pixel.y());
+            const FieldWeights field = field_weights(camera, pixel.x(), pixel.y());
             normal += direction * direction.transpose();
             for (std::size_t k = 0; k < 4; ++k)
                 right.col(static_cast<int>(field.nodes[k])) += field.weights[k] * direction;

@@ -34,9 +34,9 @@ struct BentDepth {
 };
 
 /// Finds poses, landmarks and the offsets of inverse depth together, all by least squares, the offsets with a
-/// prior of zero, 6 cm at 3 m (their sum with what was corrected before, `so_far`). `camera` is the sensor's;
-/// its depth_correction does not count. The task stays as it is.
-/// `flatness` is of the same readings.
+/// prior of zero, 6 cm at 3 m (their sum with what was corrected before, `so_far`). `camera` is the sensor's,
+/// as it senses; its depth_correction does not count. The task stays as it is. `flatness` is of the same
+/// readings.
 BentDepth bent_depth(const OptimisationTask& task, const CameraInfo& camera, const DepthCorrection& so_far,
                      const Flatness& flatness = {});
 

@@ -9,6 +9,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "core/geometry/packed_outline.hpp"
 #include "core/geometry/plane_intersection.hpp"
@@ -71,6 +72,27 @@ camera_intrinsics_t to_message(const PinholeCamera& camera) {
 
 PinholeCamera from_message(const camera_intrinsics_t& m) {
     return {m.width, m.height, m.fx, m.fy, m.cx, m.cy};
+}
+
+constexpr std::pair<LensDistortion::Model, std::int8_t> kModels[] = {
+    {LensDistortion::Model::kBrown, lens_distortion_t::BROWN},
+    {LensDistortion::Model::kFisheye, lens_distortion_t::FISHEYE}};
+
+lens_distortion_t to_message(const std::optional<LensDistortion>& lens) {
+    lens_distortion_t message{};
+    if (!lens) return message;
+    for (const auto& [model, number] : kModels)
+        if (model == lens->model) message.model = number;
+    message.coefficients = lens->coefficients;
+    message.n_coefficients = count32(lens->coefficients.size());
+    return message;
+}
+
+std::optional<LensDistortion> from_message(const lens_distortion_t& message, const char* field) {
+    if (message.model == lens_distortion_t::NONE) return std::nullopt;
+    for (const auto& [model, number] : kModels)
+        if (number == message.model) return LensDistortion{model, message.coefficients};
+    fail(field, "is of model " + std::to_string(message.model) + ", which is not known");
 }
 
 planar_region_t to_message(const PlanarRegion& region) {
@@ -190,6 +212,8 @@ camera_info_t to_message(const CameraInfo& camera, std::int64_t utime, std::int3
     message.noise_offset_m = camera.noise.offset_m;
     message.body_known = camera.body_from_camera ? 1 : 0;
     message.body_from_camera = to_message(camera.body_from_camera.value_or(Pose::Identity()));
+    message.depth_distortion = to_message(camera.depth_distortion);
+    message.color_distortion = to_message(camera.color_distortion);
     return message;
 }
 
@@ -223,6 +247,8 @@ CameraInfo from_message(const camera_info_t& message) {
     camera.noise = {message.noise_base_m, message.noise_quadratic_per_m, message.noise_offset_m};
     if (message.body_known != 0)
         camera.body_from_camera = from_message(message.body_from_camera, "camera_info.body_from_camera");
+    camera.depth_distortion = from_message(message.depth_distortion, "camera_info.depth_distortion");
+    camera.color_distortion = from_message(message.color_distortion, "camera_info.color_distortion");
     try {
         camera.validate();
     } catch (const std::invalid_argument& error) {

@@ -130,6 +130,10 @@ void walk(Walker& w, const camera_info_t*) {
     w.string("serial");
     w.skip(2 * (8 + 32) + 1 + kTransform + 6 * kDouble, "intrinsics");
     w.skip(8 + 1 + kTransform, "body_from_camera");
+    for (const char* field : {"depth_distortion", "color_distortion"}) {
+        w.skip(1, field);
+        w.array(w.length(field), kDouble, field);
+    }
 }
 void walk(Walker& w, const acceleration_t*) {
     w.skip(8 + 3 * kDouble, "acceleration");
@@ -217,11 +221,12 @@ std::vector<Earlier> earlier(const T*) {
     return {};
 }
 std::vector<Earlier> earlier(const camera_info_t*) {
-    std::vector<std::uint8_t> unknown = zeros(8 + 1 + kTransform);
+    constexpr std::size_t kNoLenses = 2 * (1 + 4);
+    std::vector<std::uint8_t> unknown = zeros(8 + 1 + kTransform + kNoLenses);
     constexpr std::size_t kW = 8 + 1 + 3 * 8;  // of the identity's quaternion, 1.0
     unknown[kW] = 0x3f;
     unknown[kW + 1] = 0xf0;
-    return {{0xbb0361eb1a14a65e, unknown}};
+    return {{0xa60897c52a8f1405, zeros(kNoLenses)}, {0xbb0361eb1a14a65e, unknown}};
 }
 std::vector<Earlier> earlier(const keyframe_t*) {
     return {{0x13937206eb19e2fb, {0xff, 0xff, 0xff, 0xff}}};  // of a chain that is not known

@@ -65,8 +65,8 @@ bool fits(const image_t* image, const PinholeCamera& camera) {
     return image == nullptr || (image->width == camera.width && image->height == camera.height);
 }
 
-bool fits(const images_t& images, const CameraInfo& camera) {
-    return fits(find_depth(images), camera.depth) && fits(find_color(images), camera.color);
+bool fits(const images_t& images, const Undistortion& camera) {
+    return fits(find_depth(images), camera.sensed().depth) && fits(find_color(images), camera.sensed().color);
 }
 
 images_t decode_images(std::span<const std::uint8_t> bytes) {
@@ -78,16 +78,17 @@ images_t decode_images(std::span<const std::uint8_t> bytes) {
 
 }  // namespace
 
-Frame::Frame(images_t images, std::shared_ptr<const CameraInfo> camera, std::shared_ptr<Histogram> decode_ms)
+Frame::Frame(images_t images, std::shared_ptr<const Undistortion> camera,
+             std::shared_ptr<Histogram> decode_ms)
     : images_(std::move(images)), camera_(std::move(camera)), decode_ms_(std::move(decode_ms)) {
     color_ = find_color(images_);
     raw_depth_ = find_depth(images_);
     zipped_ = depth_is_zipped(images_);
     if (raw_depth_ == nullptr)
         throw MessageError("frame: no depth image (DEPTH_MM or DEPTH_MM_ZIPPED) in it");
-    require_size(*raw_depth_, camera_->depth, "depth");
+    require_size(*raw_depth_, camera_->sensed().depth, "depth");
     if (color_ == nullptr) return;
-    require_size(*color_, camera_->color, "colour");
+    require_size(*color_, camera_->sensed().color, "colour");
     require_color_format(*color_);
 }
 
@@ -121,17 +122,19 @@ const DepthImage& Frame::depth() const {
     if (!depth_) {
         const Timer timer(spent_ms_);
         depth_ = depth_pixels(*raw_depth_, zipped_);
-        correct_depth(*depth_, *camera_);
+        correct_depth(*depth_, camera_->sensed());
+        camera_->undistort(*depth_);
     }
     return *depth_;
 }
 
 const DepthImage& Frame::depth_in_color() const {
     const DepthImage& sensed = depth();
-    if (camera_->registered && camera_->depth == camera_->color) return sensed;
+    if (camera().registered && camera().depth == camera().color) return sensed;
     if (!depth_in_color_) {
         const Timer timer(spent_ms_);
-        depth_in_color_ = register_depth(sensed, *camera_);
+        depth_in_color_ = register_depth(sensed, camera());
+        camera_->hide_unseen(*depth_in_color_);
     }
     return *depth_in_color_;
 }
@@ -141,15 +144,18 @@ const GrayImage* Frame::gray() const {
     if (!gray_) {
         const Timer timer(spent_ms_);
         gray_ = luma_pixels(*color_);
+        camera_->undistort(*gray_);
     }
     return &*gray_;
 }
 
 std::optional<RgbImage> Frame::color(int reduction) const {
     if (color_ == nullptr) return std::nullopt;
-    return color_->pixelformat == image_t::PIXEL_FORMAT_MJPEG
-               ? decode_jpeg_colors(color_->data, color_->width, color_->height, reduction)
-               : color_pixels(*color_, reduction);
+    RgbImage color = color_->pixelformat == image_t::PIXEL_FORMAT_MJPEG
+                         ? decode_jpeg_colors(color_->data, color_->width, color_->height, reduction)
+                         : color_pixels(*color_, reduction);
+    camera_->undistort_reduced(color, reduction);
+    return color;
 }
 
 namespace {
@@ -190,7 +196,7 @@ std::vector<const char*> FrameDecoder::refusals() {
 
 FrameDecoder::FrameDecoder(Bus& bus, std::optional<CameraInfo> camera)
     : bus_(bus), camera_is_given_(camera.has_value()) {
-    if (camera) camera_ = std::make_shared<CameraInfo>(*camera);
+    if (camera) camera_ = std::make_shared<const Undistortion>(*camera);
     bus.subscribe(channels::kCameraInfo, [this](const RawMessage& message) { on_camera(message); });
 }
 
@@ -210,7 +216,7 @@ void FrameDecoder::on_camera(const RawMessage& message) {
         camera_refused_ = error.what();
         throw;
     }
-    if (camera_ && *camera_ == described) {
+    if (camera_ && camera_->sensed() == described) {
         described_utime_ = newest_utime_;
         if (other_camera_ && !two_cameras_said_) {
             spdlog::warn("two cameras are described on {}; the first is used while it lives",
@@ -220,7 +226,7 @@ void FrameDecoder::on_camera(const RawMessage& message) {
         other_camera_.reset();
         return;
     }
-    auto other = std::make_shared<const CameraInfo>(std::move(described));
+    auto other = std::make_shared<const Undistortion>(described);
     if (!camera_ || camera_is_given_ || !newest_utime_) {
         camera_ = std::move(other);
         described_utime_ = newest_utime_;

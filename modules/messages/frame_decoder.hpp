@@ -13,6 +13,7 @@
 #include "core/camera.hpp"
 #include "core/histogram.hpp"
 #include "core/image.hpp"
+#include "core/undistortion.hpp"
 #include "messages/bus.hpp"
 #include "messages/channels.hpp"
 #include "messages/module_status.hpp"
@@ -25,7 +26,7 @@ namespace planemap::messages {
 /// size, every time they are asked.
 class Frame {
   public:
-    Frame(bot_core::images_t images, std::shared_ptr<const CameraInfo> camera,
+    Frame(bot_core::images_t images, std::shared_ptr<const Undistortion> camera,
           std::shared_ptr<Histogram> decode_ms);
     ~Frame();
     Frame(const Frame&) = delete;
@@ -33,16 +34,20 @@ class Frame {
 
     std::int64_t utime() const { return images_.utime; }  ///< of the depth image, microseconds
     std::int64_t color_utime() const;                     ///< of the colour image; 0 without colour
-    const CameraInfo& camera() const { return *camera_; }
+    /// Of the images that the accessors give: pinholes, without distortion.
+    const CameraInfo& camera() const { return camera_->pinhole(); }
+    /// Of the images as they came.
+    const CameraInfo& sensed_camera() const { return camera_->sensed(); }
     /// The sender's count of frames, if it sent one.
     std::optional<std::uint32_t> seq() const;
 
     /// Of the images as they came: what keeping the frame takes, apart from what was decoded.
     std::size_t image_bytes() const;
 
-    const DepthImage& depth() const;  ///< depth camera's pixels, raw units, corrected if the camera says how
+    /// Depth camera's pixels, raw units, corrected and undistorted as far as the camera says how.
+    const DepthImage& depth() const;
     const DepthImage& depth_in_color() const;  ///< registered to the colour camera's pixels, raw units
-    const GrayImage* gray() const;             ///< luma; nullptr without colour
+    const GrayImage* gray() const;             ///< luma, undistorted; nullptr without colour
     /// A small picture of the colours, one pixel for `reduction` x `reduction` (1, 2, 4 or 8); not kept.
     /// Nothing without colour.
     std::optional<RgbImage> color(int reduction) const;
@@ -51,7 +56,7 @@ class Frame {
     friend class FrameDecoder;
 
     bot_core::images_t images_;
-    std::shared_ptr<const CameraInfo> camera_;
+    std::shared_ptr<const Undistortion> camera_;
     std::shared_ptr<Histogram> decode_ms_;
     const bot_core::image_t* color_ = nullptr;  // into images_
     const bot_core::image_t* raw_depth_ = nullptr;
@@ -93,7 +98,8 @@ class FrameDecoder {
     /// What ModuleStatus::lost() of a subscriber calls frames that are not taken, each way once.
     static std::vector<const char*> refusals();
 
-    const CameraInfo* camera() const { return camera_.get(); }
+    /// Of the images as they come; nullptr when it is not described yet.
+    const CameraInfo* camera() const { return camera_ ? &camera_->sensed() : nullptr; }
     /// Milliseconds that images took to decode and register, one entry a frame that was decoded.
     const Histogram& decode_ms() const { return *decode_ms_; }
 
@@ -114,7 +120,7 @@ class FrameDecoder {
     void deliver(const std::shared_ptr<const Frame>& frame);
 
     Bus& bus_;
-    std::shared_ptr<const CameraInfo> camera_, other_camera_;  ///< in use; another one that was described
+    std::shared_ptr<const Undistortion> camera_, other_camera_;  ///< in use; another one that was described
     bool camera_is_given_ = false, two_cameras_said_ = false;
     std::string camera_refused_;  ///< why the last description could not be used; empty if it could
     std::optional<std::int64_t> newest_utime_,

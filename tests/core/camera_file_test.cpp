@@ -248,14 +248,68 @@ TEST(CameraFile, WhatIsKnownButNotUsedIsNoted) {
     const auto file = folder.write("camera.json", with(R"("note": "hello", "poses_of": "color_camera")"));
     read_camera_file(file, &notes);
     EXPECT_TRUE(notes.empty());
-    folder.write("camera.json", with(R"("distortion": [0.1], "registered": true,
-        "color_camera": {"width": 640, "height": 480, "fx": 585, "fy": 580, "cx": 320, "cy": 240, "distortion": []},
+    folder.write("camera.json", with(R"("registered": true,
+        "color_camera": {"width": 640, "height": 480, "fx": 585, "fy": 580, "cx": 320, "cy": 240},
         "color_from_depth": {"rotation_vector_rad": [0, 0, 0], "translation_m": [0, 0, 0]})"));
     read_camera_file(file, &notes);
     ASSERT_EQ(notes.size(), 1u);
-    EXPECT_THAT(notes[0], HasSubstr("camera.json: known, but not used: distortion, color_camera.distortion, "
-                                    "color_from_depth (registered is true)"));
+    EXPECT_THAT(notes[0],
+                HasSubstr("camera.json: known, but not used: color_from_depth (registered is true)"));
     EXPECT_NO_THROW(read_camera_file(file));
+}
+
+/// The start of a camera.json with `distortion` in its depth camera.
+std::string bent(const std::string& distortion, const std::string& more = "") {
+    return R"({"depth_camera": {"width": 640, "height": 480, "fx": 517.3, "fy": 516.5, "cx": 318.6, "cy": 255.3,
+               "distortion": )" +
+           distortion + R"(}, "depth_units_per_metre": 5000)" + more + "}";
+}
+
+TEST(CameraFile, LensesAreReadAndWritten) {
+    constexpr const char* kFreiburg1 =
+        R"({"model": "brown", "coefficients": [0.2624, -0.9531, -0.0054, 0.0026, 1.1633]})";
+    const LensDistortion brown{LensDistortion::Model::kBrown, {0.2624, -0.9531, -0.0054, 0.0026, 1.1633}};
+    const CameraInfo one = read(bent(kFreiburg1));
+    EXPECT_EQ(one.depth_distortion, brown);
+    EXPECT_EQ(one.color_distortion, brown) << "the same camera";
+    EXPECT_EQ(read(camera_file_text(one)), one);
+    const CameraInfo two = read(bent(kFreiburg1, R"(, "registered": true, "color_camera":
+        {"width": 640, "height": 480, "fx": 517.3, "fy": 516.5, "cx": 318.6, "cy": 255.3})"));
+    EXPECT_EQ(two.depth_distortion, brown);
+    EXPECT_FALSE(two.color_distortion) << "each camera its own";
+    EXPECT_EQ(read(camera_file_text(two)), two);
+    const CameraInfo fisheye = read(bent(R"({"model": "fisheye", "coefficients": [0, 0.1, 0, 0]})"));
+    EXPECT_EQ(fisheye.depth_distortion, (LensDistortion{LensDistortion::Model::kFisheye, {0, 0.1, 0, 0}}));
+    EXPECT_FALSE(read(with("")).depth_distortion);
+}
+
+TEST(CameraFile, BadLensesAreNamedWithFileFieldAndReason) {
+    const auto error = [](const std::string& distortion) {
+        const std::string text = test::error_of([&] { read(bent(distortion)); });
+        EXPECT_THAT(text, AllOf(HasSubstr("camera.json: "), Not(HasSubstr("\n"))));
+        return text;
+    };
+    EXPECT_THAT(error("[0.1, 0.2]"), HasSubstr("depth_camera.distortion is [0.1,0.2], must be an object"));
+    EXPECT_THAT(error("{}"), HasSubstr("depth_camera.distortion.model is missing, must be brown or fisheye"));
+    EXPECT_THAT(error(R"({"model": "plumb_bob", "coefficients": []})"),
+                HasSubstr("depth_camera.distortion.model is \"plumb_bob\", must be brown or fisheye"));
+    EXPECT_THAT(error(R"({"model": "brown"})"),
+                HasSubstr("distortion.coefficients is missing, must be a list "
+                          "of 4 or 5 or 8 for brown, each a number"));
+    EXPECT_THAT(error(R"({"model": "brown", "coefficients": [1, 2, 3]})"),
+                HasSubstr("depth_camera.distortion.coefficients is [1,2,3], must be a list of 4 or 5 or 8"));
+    EXPECT_THAT(error(R"({"model": "fisheye", "coefficients": [0, 0, 0, 0, 0]})"),
+                HasSubstr("must be a list of 4 for fisheye"));
+    EXPECT_THAT(error(R"({"model": "brown", "coefficients": [0, "x", 0, 0]})"),
+                HasSubstr("depth_camera.distortion.coefficients is [0,\"x\",0,0]"));
+    EXPECT_THAT(error(R"({"model": "brown", "coefficients": [0, 1e300, 0, 0]})"), HasSubstr("1e+300"));
+    EXPECT_THAT(error(R"({"model": "brown", "coeficients": [0, 0, 0, 0]})"),
+                HasSubstr("coeficients is not a known key, must be coefficients"));
+    EXPECT_THAT(
+        error(R"({"model": "brown", "coefficients": [-0.9, 0, 0, 0]})"),
+        HasSubstr("depth.distortion is brown [-0.9, 0, 0, 0], must be monotonic over the whole image"));
+    EXPECT_THAT(test::error_of([] { read(with(R"("distortion": [0.1])")); }),
+                HasSubstr("camera.json: distortion is [0.1], must be within depth_camera or color_camera"));
 }
 
 TEST(CameraFile, EveryOneOfTheSharedDataIsRead) {

@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "core/lens_distortion.hpp"
+
 namespace planemap {
 namespace {
 
@@ -45,6 +47,17 @@ TEST(DepthCorrection, NodesAreAtTheImagesCornersAndTheFieldIsLinearBetween) {
     EXPECT_NEAR(offset_at(ramp(), depth, -0.5, -0.5), ramp().offsets.front(), 1e-12);
     EXPECT_NEAR(offset_at(ramp(), depth, 63.5, 47.5), ramp().offsets.back(), 1e-12);
     EXPECT_NEAR(offset_at(ramp(), depth, 31.5, 23.5), 0.001 * 2 - 0.002 * 1.5, 1e-12);
+}
+
+TEST(DepthCorrection, NodesLieInTheImageThatTheLensDraws) {
+    CameraInfo camera = camera_of(64, 48);
+    camera.depth_distortion = LensDistortion{LensDistortion::Model::kBrown, {-0.3, 0, 0, 0}};
+    const Eigen::Vector2d drawn = sensed_pixel(camera.depth, camera.depth_distortion, {60, 45});
+    EXPECT_GT((drawn - Eigen::Vector2d(60, 45)).norm(), 1);
+    const FieldWeights there = field_weights(camera.depth, drawn.x(), drawn.y()),
+                       field = field_weights(camera, 60, 45);
+    EXPECT_EQ(field.nodes, there.nodes);
+    EXPECT_EQ(field.weights, there.weights);
 }
 
 TEST(DepthCorrection, InverseDepthsAddUp) {

@@ -9,7 +9,11 @@ void fuzz(Bytes bytes) {
 }
 
 std::vector<std::string> seeds() {
-    return {seed_of(messages::to_message(test::sample_camera(), 5, 1))};
+    CameraInfo bent = test::sample_camera();
+    bent.depth_distortion = LensDistortion{LensDistortion::Model::kBrown, {-0.2, 0.01, 0, 0.001, 0}};
+    bent.color_distortion = LensDistortion{LensDistortion::Model::kFisheye, {0.01, 0, 0, 0}};
+    return {seed_of(messages::to_message(test::sample_camera(), 5, 1)),
+            seed_of(messages::to_message(bent, 5, 1))};
 }
 
 }  // namespace planemap::fuzz

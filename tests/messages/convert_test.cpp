@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "messages/convert.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,6 +10,7 @@
 #include "core/stamp.hpp"
 #include "messages/decode.hpp"
 #include "messages/sample_messages.hpp"
+#include "temporary_folder.hpp"
 
 namespace planemap::messages {
 namespace {
@@ -38,6 +40,19 @@ TEST(Convert, CameraRoundTrip) {
     camera.color_from_depth = make_pose({-0.025, 0, 0}, Eigen::Quaterniond::Identity());
     camera.noise.quadratic_per_m = 0.003;
     EXPECT_TRUE(from_message(to_message(camera, 1, 2)) == camera);
+    camera.depth_distortion = LensDistortion{LensDistortion::Model::kBrown, {-0.2, 0.01, 0, 0.001, 0}};
+    camera.color_distortion = LensDistortion{LensDistortion::Model::kFisheye, {0.01, 0, 0, 0}};
+    EXPECT_TRUE(from_message(to_message(camera, 1, 2)) == camera);
+    camera_info_t message = to_message(camera, 1, 2);
+    message.depth_distortion.model = 9;
+    EXPECT_THAT(test::error_of([&] { from_message(message); }),
+                testing::HasSubstr("camera_info.depth_distortion is of model 9"));
+    message = to_message(camera, 1, 2);
+    message.color_distortion.coefficients.assign(3, 0.1);
+    EXPECT_THAT(test::error_of([&] { from_message(message); }),
+                testing::HasSubstr("color.distortion is fisheye [0.1, 0.1, 0.1], must be 4 coefficients"));
+    message.color_distortion.coefficients.assign(4, std::nan(""));
+    EXPECT_THROW(from_message(message), MessageError);
 }
 
 TEST(Convert, HowACameraIsMountedIsKnownOrNot) {

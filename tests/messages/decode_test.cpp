@@ -85,6 +85,9 @@ void torment(const T& message) {
 TEST(Decode, SurvivesHostileBytes) {
     torment(sample_images());
     torment(to_message(test::sample_camera(), 1, 2));
+    CameraInfo bent = test::sample_camera();
+    bent.depth_distortion = LensDistortion{LensDistortion::Model::kBrown, {0.1, 0, 0, 0}};
+    torment(to_message(bent, 1, 2));
     torment(to_message(Acceleration{1, {0, -9.8, 0}}));
     torment(to_message(FrameRegions{7, {test::sample_region()}}, 3));
     torment(to_message(OdometryEstimate(), 4));
@@ -142,6 +145,21 @@ TEST(Decode, BeforeThereWereComponentsAllHungTogether) {
     for (std::size_t i = 0; i < 8; ++i)
         bytes[i] = static_cast<std::uint8_t>(fingerprints<keyframe_t>()[1] >> (56 - 8 * i));
     EXPECT_EQ(from_message(decode<keyframe_t>(bytes)).chain, -1);
+}
+
+TEST(Decode, ACameraOfAnEarlierPlanemapHasNoLens) {
+    const std::vector<std::uint8_t> today = encoded(to_message(test::sample_camera(), 1, 2));
+    ASSERT_EQ(fingerprints<camera_info_t>().size(), 3u);
+    for (const auto& [number, missing] : {std::pair(1, 10), std::pair(2, 75)}) {  // lenses; session and mount
+        std::vector<std::uint8_t> earlier = today;
+        earlier.resize(earlier.size() - static_cast<std::size_t>(missing));
+        const std::uint64_t fingerprint = fingerprints<camera_info_t>().at(static_cast<std::size_t>(number));
+        for (std::size_t i = 0; i < 8; ++i)
+            earlier[i] = static_cast<std::uint8_t>(fingerprint >> (56 - 8 * i));
+        EXPECT_EQ(from_message(decode<camera_info_t>(earlier)), test::sample_camera());
+        for (std::size_t length = 0; length < earlier.size(); ++length)
+            EXPECT_THROW(decode<camera_info_t>(std::span(earlier).first(length)), MessageError) << length;
+    }
 }
 
 TEST(Decode, HugeLengthIsRefusedBeforeAllocation) {

@@ -5,7 +5,10 @@
 
 #include <functional>
 
+#include "core/depth_correction.hpp"
+#include "core/undistortion.hpp"
 #include "messages/channels.hpp"
+#include "messages/image_codec.hpp"
 #include "messages/sample_messages.hpp"
 #include "messages/told_status.hpp"
 
@@ -254,6 +257,85 @@ TEST(FrameDecoder, RegistersUnregisteredDepthOnce) {
     EXPECT_EQ(frame->depth_in_color()(4, 10), 0);
     EXPECT_EQ(frame->depth_in_color()(5, 10), 1000);
     EXPECT_EQ(&frame->depth_in_color(), &frame->depth_in_color());
+}
+
+CameraInfo bent_camera() {
+    CameraInfo camera = sample_camera();
+    camera.depth_distortion = camera.color_distortion =
+        LensDistortion{LensDistortion::Model::kBrown, {-0.25, 0, 0.01, 0}};
+    return camera;
+}
+
+/// Images that say where their pixels are.
+std::pair<DepthImage, RgbImage> slopes() {
+    DepthImage depth(64, 48);
+    RgbImage color(64, 48);
+    for (int v = 0; v < 48; ++v) {
+        for (int u = 0; u < 64; ++u) {
+            depth(u, v) = static_cast<std::uint16_t>(1000 + 100 * u + v);
+            color(u, v) = {static_cast<std::uint8_t>(4 * u), static_cast<std::uint8_t>(4 * u),
+                           static_cast<std::uint8_t>(4 * u)};
+        }
+    }
+    return {depth, color};
+}
+
+TEST(FrameDecoder, UndoesTheLensOnce) {
+    Bus bus("memq://");
+    FrameDecoder decoder(bus);
+    bus.publish(channels::kCameraInfo, to_message(bent_camera(), 1, 0));
+    bus.drain();
+    ASSERT_NE(decoder.camera(), nullptr);
+    EXPECT_EQ(*decoder.camera(), bent_camera());
+    auto [depth, color] = slopes();
+    for (const auto c : {ColorEncoding::kRaw, ColorEncoding::kJpeg}) {
+        const auto bytes = encoded(frame_message(depth, color, c, DepthEncoding::kZipped));
+        const auto frame = decoder.decode(raw(bytes));
+        EXPECT_EQ(frame->camera(), sample_camera()) << "a pinhole";
+        EXPECT_EQ(frame->sensed_camera(), bent_camera());
+        DepthImage expected = depth;
+        GrayImage gray = luma(color);
+        const Undistortion undistortion(bent_camera());
+        undistortion.undistort(expected);
+        undistortion.undistort(gray);
+        EXPECT_NE(expected.pixels, depth.pixels);
+        EXPECT_EQ(frame->depth().pixels, expected.pixels);
+        EXPECT_EQ(frame->depth_in_color().pixels, expected.pixels);
+        EXPECT_EQ(frame->depth().pixels, expected.pixels) << "and not again";
+        for (std::size_t i = 0; i < gray.pixels.size(); ++i)
+            ASSERT_NEAR(frame->gray()->pixels[i], gray.pixels[i], 3);
+        const auto small = frame->color(2);
+        ASSERT_TRUE(small);
+        EXPECT_NEAR((*small)(30, 2).r, frame->gray()->row(4)[60], 12) << "previews, too";
+    }
+}
+
+TEST(FrameDecoder, CorrectsReadingsWhereTheyWereSensed) {
+    Bus bus("memq://");
+    CameraInfo camera = bent_camera();
+    camera.depth_correction.emplace();
+    for (std::size_t i = 0; i < DepthCorrection::kNodes; ++i)
+        camera.depth_correction->offsets[i] = 0.002 * static_cast<double>(i);
+    FrameDecoder decoder(bus, camera);
+    auto [expected, color] = slopes();
+    const auto bytes = encoded(frame_message(expected, color, ColorEncoding::kRaw, DepthEncoding::kRaw));
+    correct_depth(expected, camera);
+    Undistortion(camera).undistort(expected);
+    EXPECT_EQ(decoder.decode(raw(bytes))->depth().pixels, expected.pixels);
+}
+
+TEST(FrameDecoder, WhatColourDoesNotShowHasNoDepthInIt) {
+    Bus bus("memq://");
+    CameraInfo camera = sample_camera();
+    camera.registered = false;
+    camera.color_distortion = LensDistortion{LensDistortion::Model::kBrown, {0.4, 0, 0, 0}};
+    FrameDecoder decoder(bus, camera);
+    const auto bytes = encoded(
+        frame_message(DepthImage(64, 48, 1000), RgbImage(64, 48), ColorEncoding::kRaw, DepthEncoding::kRaw));
+    const auto frame = decoder.decode(raw(bytes));
+    EXPECT_EQ(frame->depth()(0, 0), 1000);
+    EXPECT_EQ(frame->depth_in_color()(0, 0), 0);
+    EXPECT_EQ(frame->depth_in_color()(32, 24), 1000);
 }
 
 TEST(FrameDecoder, FramesThatDoNotAddUpAreErrors) {

@@ -171,9 +171,10 @@ TEST(Dataset, WhatCameraJsonSaysInVainIsNoted) {
     const Folder folder;
     folder.write("rgb.txt", "1.0 a\n2.0 b\n");
     folder.write("camera.json", R"({"depth_camera": {"width": 16, "height": 12, "fx": 20, "fy": 20, "cx": 8,
-        "cy": 6}, "depth_units_per_metre": 1000, "distortion": {}})");
+        "cy": 6}, "depth_units_per_metre": 1000, "registered": true,
+        "color_from_depth": {"rotation_vector_rad": [0, 0, 0], "translation_m": [0, 0, 0]}})");
     EXPECT_THAT(Dataset(folder.path()).notes(),
-                ElementsAre(HasSubstr("camera.json: known, but not used: distortion")));
+                ElementsAre(HasSubstr("camera.json: known, but not used: color_from_depth")));
 }
 
 TEST(Dataset, AMissingFileIsABrokenFrame) {

@@ -239,6 +239,19 @@ TEST_F(Stored, WhatAnEarlierMessageLacksIsNotKnown) {
     EXPECT_EQ(messages::decode<map_size_t>(bytes[messages::channels::kOctomapSize]).n_keyframes, 1);
 }
 
+TEST_F(Stored, ACameraThatWasDescribedBeforeDistortionHasNone) {
+    messages::LogReader log(stored("camera_info.lcmlog"));
+    messages::LogEvent event;
+    ASSERT_TRUE(log.next(event));
+    EXPECT_EQ(messages::fingerprint_of(event.bytes), 0xa60897c52a8f1405u);
+    const CameraInfo camera = messages::from_message(messages::decode<camera_info_t>(event.bytes));
+    EXPECT_EQ(camera.serial, "sim:office");
+    EXPECT_EQ(camera.depth.width, 192);
+    EXPECT_FALSE(camera.registered);
+    EXPECT_FALSE(camera.depth_distortion);
+    EXPECT_FALSE(camera.color_distortion);
+}
+
 TEST_F(Stored, ALogIsReplayedIntoEachModule) {
     const std::map<std::string, std::string> frames = {{"segmentation", "3 in"}, {"odometry", "3 in"}};
     for (const char* module : {"segmentation", "odometry", "graph", "map", "octomap"}) {

@@ -11,6 +11,7 @@
 #include "core/camera_file.hpp"
 #include "core/geometry/moments.hpp"
 #include "core/trajectory.hpp"
+#include "core/undistortion.hpp"
 #include "segment/read_image.hpp"
 #include "sensor/dataset.hpp"
 #include "simulator/simulated_source.hpp"
@@ -25,7 +26,8 @@ constexpr int kFrames = 60;  // of a sequence that does not say
 /// A recording in the TUM layout: depth, and poses where there are some.
 Sequence open_recording(const std::filesystem::path& folder, std::size_t frames) {
     const auto dataset = std::make_shared<const sensor::Dataset>(folder);
-    const CameraInfo& camera = dataset->camera();
+    const auto undistortion = std::make_shared<const Undistortion>(dataset->camera());
+    const CameraInfo& camera = undistortion->pinhole();
     Trajectory truth;
     if (std::filesystem::exists(folder / "groundtruth.txt"))
         truth = read_trajectory(folder / "groundtruth.txt");
@@ -33,6 +35,7 @@ Sequence open_recording(const std::filesystem::path& folder, std::size_t frames)
         const sensor::ListedImage& listed = dataset->frames()[index].depth;
         BenchFrame frame;
         frame.depth = read_image(folder / listed.file, camera, sensor::decode_depth_png);
+        undistortion->undistort(frame.depth);
         if (const auto world_from_color = pose_at(truth, listed.utime, kMaxPoseGap_us))
             frame.world_from_depth = *world_from_color * camera.color_from_depth;
         return frame;
@@ -61,6 +64,9 @@ std::vector<Plane> fit_surfaces(const Image<std::uint16_t>& surfaces, const Dept
 /// Images with a label image each: one colour a plane, black for none. True planes are fitted to the depth.
 Sequence open_labelled(const std::filesystem::path& folder, std::size_t frames) {
     const CameraInfo camera = read_camera_file(folder / "camera.json");
+    if (camera.depth_distortion)
+        throw std::invalid_argument((folder / "camera.json").string() +
+                                    ": labels are of a lens's image, not a pinhole's");
     std::size_t count = 0;
     while (std::filesystem::exists(folder / (std::to_string(count) + ".depth.png"))) ++count;
     const auto load = [=](std::size_t index) {
@@ -120,6 +126,8 @@ Truth truth_of_view(const simulator::World& world, const simulator::View& view, 
 Sequence open_simulated(const std::string& name, std::size_t frames) {
     const auto source =
         std::make_shared<const simulator::SimulatedSource>(simulator::parse_simulator_name(name));
+    if (source->camera().depth_distortion)
+        throw std::invalid_argument(name + ": its truth is a lens's here, not a pinhole's: leave out `lens`");
     const auto load = [source](std::size_t index) {
         const simulator::View view = source->biased_view(index);
         BenchFrame frame;

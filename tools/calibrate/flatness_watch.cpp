@@ -63,7 +63,7 @@ void FlatnessWatch::hear(const messages::Frame& frame) {
     if (flatness_.regions > 0 && frame.utime() < next_utime_) return;
     next_utime_ = frame.utime() + kEvery_us;
     segmenter_->segment(frame.depth(), frame.camera(), segmentation_);
-    add(frame.depth(), segmentation_.labels, frame.camera());
+    add(frame.depth(), segmentation_.labels, frame.sensed_camera());
 }
 
 void FlatnessWatch::add(const DepthImage& depth, const Image<std::uint16_t>& labels,
@@ -75,7 +75,7 @@ void FlatnessWatch::add(const DepthImage& depth, const Image<std::uint16_t>& lab
             if (label == 0 || !is_valid_depth(depth(u, v))) continue;
             if (label >= regions.size()) regions.resize(label + 1);
             const double z = camera.metres(depth(u, v)), sigma = camera.noise.sigma(z) / (z * z);
-            regions[label].add(field_weights(camera.depth, u, v), camera.depth.unproject(u, v, 1), 1 / z,
+            regions[label].add(field_weights(camera, u, v), camera.depth.unproject(u, v, 1), 1 / z,
                                kReadingsWorth / (sigma * sigma));
         }
     }

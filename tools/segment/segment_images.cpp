@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "core/files.hpp"
+#include "core/undistortion.hpp"
 #include "evaluate/statistics.hpp"
 #include "messages/module_status.hpp"
 #include "results/progress_line.hpp"
@@ -98,9 +99,11 @@ void SegmentImagesOptions::validate() const {
     segmentation.validate();
 }
 
-SegmentImagesReport segment_images(const SegmentImagesOptions& options, const CameraInfo& camera) {
+SegmentImagesReport segment_images(const SegmentImagesOptions& options, const CameraInfo& sensed) {
     options.validate();
-    camera.validate();
+    sensed.validate();
+    const Undistortion undistortion(sensed);
+    const CameraInfo& camera = undistortion.pinhole();
     // What a run that did not end left is a part of one image's results, which can be made again.
     ResultFolder folder(options.output, names_of(options.images), ".partial",
                         ResultFolder::Leftovers::kRemove);
@@ -114,7 +117,8 @@ SegmentImagesReport segment_images(const SegmentImagesOptions& options, const Ca
         const ResultNames names(image);
         refuse_to_overwrite(options.output, names, options.images);
         bool end_missing = false;
-        const DepthImage depth = read_image(image, camera, sensor::decode_depth_png, &end_missing);
+        DepthImage depth = read_image(image, camera, sensor::decode_depth_png, &end_missing);
+        undistortion.undistort(depth);
         if (end_missing) cut.push_back(image);
         segmenter->segment(depth, camera, segmentation);
         nlohmann::ordered_json json{{"image", image.string()}, {"width", depth.width},

@@ -32,11 +32,12 @@ struct SegmentImagesReport {
 
 /// Writes for each image output/STEM.png (labels, 16-bit greyscale; 0: none, i: region i) and
 /// output/STEM.json (image, width, height, method, labels, time_ms, and regions: see regions_json()), both at
-/// once; of an earlier run, that image's results are replaced. An image that cannot be read, has not the
+/// once; of an earlier run, that image's results are replaced. `sensed` is of the images as they are: what
+/// its lens does is undone, and labels are in the pinhole's pixels. An image that cannot be read, has not the
 /// camera's size, or whose results cannot be written, or would overwrite an input or an image of another
 /// kind, costs itself only. Throws std::invalid_argument for bad options or a bad camera, std::runtime_error
 /// if the folder cannot be made or written to, or another run writes there.
-SegmentImagesReport segment_images(const SegmentImagesOptions& options, const CameraInfo& camera);
+SegmentImagesReport segment_images(const SegmentImagesOptions& options, const CameraInfo& sensed);
 
 /// Takes the arguments that are neither flags nor values of flags out of a command line: the files. Every
 /// flag takes a value unless it is written --flag=value or stands in `switches`. What follows "--" is a file.

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "messages/image_codec.hpp"
+#include "sensor/undistorted_source.hpp"
 
 namespace planemap::virtual_camera {
 
@@ -33,7 +34,7 @@ RgbImage color_of(SensorFrame& frame, const PinholeCamera& camera) {
 
 Feed::Feed(Order order)
     : order_(std::move(order)),
-      source_(sensor::open_source(order_.input)),
+      source_(sensor::undistorted(sensor::open_source(order_.input))),
       camera_(source_->camera()),
       random_(order_.options.seed) {
     camera_.depth_units_per_metre = 1000;
@@ -46,7 +47,7 @@ bool Feed::read(SensorFrame& frame) {
         if (result.status == ReadResult::Status::kFrame) return !(is_fresh_ = false);
         if (result.status != ReadResult::Status::kEnd) continue;
         if (order_.options.once || is_fresh_) return false;
-        source_ = sensor::open_source(order_.input);
+        source_ = sensor::undistorted(sensor::open_source(order_.input));
         is_fresh_ = true;
     }
 }

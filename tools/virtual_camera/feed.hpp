@@ -26,7 +26,7 @@ class Feed {
     /// Throws as open_source().
     explicit Feed(Order order);
 
-    /// The input's, with depth in millimetres.
+    /// The input's, with depth in millimetres and without distortion, of which OpenNI2 has no word.
     const CameraInfo& camera() const { return camera_; }
     const Options& options() const { return order_.options; }
     /// The next tick; false where there is none (--once, or an input without a frame that can be read).
