@@ -110,14 +110,15 @@ Json sensor_of(const SimulatedSource& source) {
         {"color_camera", camera_of(cameras.color)},
         {"color_from_depth",
          {{"rotation_vector_rad", to_json(twist.tail<3>())}, {"translation_m", to_json(twist.head<3>())}}},
-        {"distortion", options.distortion}};
+        {"distortion", options.lens.empty() ? options.distortion : 0.0}};
+    if (!options.lens.empty()) json["lens"] = options.lens;
     if (source.bias()) json["bias"] = bias_of(*source.bias(), cameras.depth);
     return json;
 }
 
 bool has_errors(const SimulatorOptions& options) {
     return !options.profile.empty() || options.bias > 0 || options.focal_error > 0 ||
-           options.mount_error_deg > 0 || options.distortion > 0;
+           options.mount_error_deg > 0 || options.distortion > 0 || !options.lens.empty();
 }
 
 }  // namespace

@@ -26,6 +26,12 @@ SimulatedSource::SimulatedSource(const SimulatorOptions& options) : options_(opt
     camera_ = nominal_camera(options_);
     true_ =
         simulator::true_cameras(camera_, options_.focal_error, options_.mount_error_deg, options_.specimen);
+    const auto lens_of = [&](const PinholeCamera& camera) {
+        return options_.lens.empty() ? Lens(camera, options_.distortion)
+                                     : Lens(camera, parse_lens(options_.lens));
+    };
+    depth_lens_ = lens_of(true_.depth);
+    color_lens_ = lens_of(true_.color);
     depth_options_ = depth_options(options_, camera_);
     if (options_.bias > 0)
         bias_.emplace(depth_options_.principle, options_.bias, true_.depth, options_.specimen);
@@ -105,16 +111,16 @@ View SimulatedSource::depth_view(std::size_t i) const {
 }
 
 View SimulatedSource::biased_view(std::size_t i) const {
-    View view = depth_view(i);
     World moved;
-    distort(world_then(utime(i), moved), view);
+    const World& now = world_then(utime(i), moved);
+    View view = render_view(now, depth_lens_->pinhole(), world_from_depth(utime(i)));
+    distort(now, view);
     return view;
 }
 
 /// Lens, bias and second surfaces.
 void SimulatedSource::distort(const World& now, View& view) const {
-    const Lens lens(true_.depth, options_.distortion);
-    if (!lens.is_pinhole()) view = lens.distorted(now, view);
+    if (!depth_lens_->is_pinhole()) view = depth_lens_->distorted(now, view);
     if (options_.multipath > 0) add_multipath(now, view, options_.multipath);
     if (bias_) bias_->apply(view);
 }
@@ -127,7 +133,8 @@ double SimulatedSource::exposure_at(std::int64_t time_us) const {
 }
 
 RgbImage SimulatedSource::color(std::size_t i, const World& now, const View& depth_view) const {
-    LaneImage sum(camera_.color.width, camera_.color.height);
+    const PinholeCamera& camera = color_lens_->pinhole();
+    LaneImage sum(camera.width, camera.height);
     const std::int64_t middle = color_utime(i);
     const bool same_view = camera_.registered && middle == utime(i) && options_.mount_error_deg == 0;
     const int samples = options_.blur_samples;
@@ -139,11 +146,10 @@ RgbImage SimulatedSource::color(std::size_t i, const World& now, const View& dep
         } else {
             World moved;
             const World& then = world_then(time, moved);
-            shade(then, render_view(then, true_.color, world_from_color(time)), exposure_at(time), sum);
+            shade(then, render_view(then, camera, world_from_color(time)), exposure_at(time), sum);
         }
     }
-    const Lens lens(true_.color, options_.distortion);
-    if (!lens.is_pinhole()) sum = lens.distorted(sum);
+    if (!color_lens_->is_pinhole()) sum = color_lens_->distorted(sum);
     return sense_color(sum, samples, options_.noise ? options_.color_noise : 0, gaussian_,
                        mix(options_.seed, 37, i));
 }
@@ -154,7 +160,7 @@ SensorFrame SimulatedSource::frame(std::size_t i) const {
     frame.color_utime = color_utime(i);
     World moved;
     const World& now = world_then(frame.utime, moved);
-    View view = render_view(now, true_.depth, world_from_depth(frame.utime));
+    View view = render_view(now, depth_lens_->pinhole(), world_from_depth(frame.utime));
     frame.color = color(i, now, view);
     distort(now, view);
     frame.depth = sense_depth(now, view, depth_options_, gaussian_, mix(options_.seed, 41, i));
@@ -173,6 +179,33 @@ ReadResult SimulatedSource::next(SensorFrame& out) {
     }
     out = frame(next_++);
     return {ReadResult::Status::kFrame, ""};
+}
+
+/// Each step is off by a share that stays, and by as much again at random.
+Trajectory SimulatedSource::body_motion() const {
+    constexpr std::int64_t kStep_us = 20000;
+    const Pose camera_from_body = camera_.body_from_camera.value().inverse();
+    const double noise = options_.motion_noise;
+    Trajectory told;
+    Pose last = Pose::Identity(), local_from_body = Pose::Identity();
+    std::uint64_t i = 0;
+    for (std::int64_t time = utime(first_); time <= utime(frame_count_ - 1) + kStep_us;
+         time += kStep_us, ++i) {
+        const Pose world_from_body = world_from_color(time) * camera_from_body;
+        if (i > 0) {
+            const auto factor = [&](std::uint64_t k) {
+                return 1 + noise * (uniform(mix(options_.seed, 83, k), -1, 1) +
+                                    uniform(mix(options_.seed, 89, i, k), -1, 1));
+            };
+            Twist step = twist_from_pose(last.inverse() * world_from_body);
+            step.head<3>() *= factor(0);
+            step.tail<3>() *= factor(1);
+            local_from_body = local_from_body * pose_from_twist(step);
+        }
+        last = world_from_body;
+        told.push_back({time, local_from_body});
+    }
+    return told;
 }
 
 Trajectory SimulatedSource::ground_truth() const {

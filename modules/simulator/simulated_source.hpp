@@ -50,6 +50,9 @@ class SimulatedSource : public FrameSource {
     const std::optional<DepthBias>& bias() const { return bias_; }
     /// The hand that carries the camera along world().tour.
     HandOptions hand() const;
+    /// What wheels and gyroscopes would say of the robot's body, 50 times a second: local_from_body, the
+    /// first one the identity, drifting by options().motion_noise. Precondition: options().mounted.
+    Trajectory body_motion() const;
     /// The colour camera's exact poses at the times of the selected frames, in order.
     Trajectory ground_truth() const;
 
@@ -67,6 +70,7 @@ class SimulatedSource : public FrameSource {
     CameraInfo camera_;
     TrueCameras true_;
     std::optional<DepthBias> bias_;
+    std::optional<Lens> depth_lens_, color_lens_;  ///< always there
     DepthSensorOptions depth_options_;
     GaussianTable gaussian_;
     Trajectory path_;

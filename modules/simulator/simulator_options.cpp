@@ -8,6 +8,7 @@
 #include "core/rounding.hpp"
 #include "core/sensor_preset.hpp"
 #include "core/validation.hpp"
+#include "simulator/lens.hpp"
 
 namespace planemap::simulator {
 
@@ -133,6 +134,17 @@ OptionList options_of(SimulatorOptions& options) {
         "distortion", options.distortion, {0, 0.1},
         "By which the lens draws an image's corners outwards, as a share of their radius; camera.json does "
         "not say it");
+    list.add(
+        "lens", options.lens, std::vector<std::string>{},
+        "The lens, instead of what `distortion` says, in OpenCV's models: brown:k1,k2,p1,p2[,k3[,k4,k5,k6]] "
+        "or fisheye:k1,k2,k3,k4; camera.json says it; empty: none");
+    list.add("lens_told", options.lens_told, "0: camera.json says nothing of `lens`");
+    list.add(
+        "mounted", options.mounted,
+        "1: camera.json says body_from_camera: a robot whose x is the optical axis, its origin the camera");
+    list.add("motion_noise", options.motion_noise, {0, 1},
+             "Share of the way and of the turns by which the robot's own word of its motion is off (see "
+             "planemap-simulate --motion-channel)");
     list.add("multipath", options.multipath, {0, 10},
              "Factor of the light that comes over a second surface and makes corners too deep");
     list.add("edges", options.edges, "What a sensor does wrong at edges; 0: nothing");
@@ -147,6 +159,7 @@ void SimulatorOptions::validate() const {
     SimulatorOptions copy = *this;
     options_of(copy).check(errors);
     errors.require(!(depth_max_m <= depth_min_m), "max", depth_max_m, "greater than min");
+    if (!lens.empty()) parse_lens(lens);
     errors.require(!(color_jitter_s > 0.5 / rate_hz), "jitter", color_jitter_s, "at most half a frame");
     errors.throw_if_any();
 }
@@ -244,6 +257,11 @@ CameraInfo nominal_camera(const SimulatorOptions& options) {
             camera.color_from_depth = pose_from_twist(twist);
         }
     }
+    if (!options.lens.empty() && options.lens_told)
+        camera.depth_distortion = camera.color_distortion = parse_lens(options.lens);
+    if (options.mounted)
+        camera.body_from_camera =
+            make_pose(Eigen::Vector3d::Zero(), Eigen::Quaterniond(0.5, -0.5, 0.5, -0.5));
     camera.validate();
     return camera;
 }

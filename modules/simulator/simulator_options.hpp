@@ -43,6 +43,10 @@ struct SimulatorOptions {
     double focal_error = 0;
     double mount_error_deg = 0;
     double distortion = 0;
+    std::string lens;  ///< see parse_lens(); empty: what `distortion` says
+    bool lens_told = true;
+    bool mounted = false;
+    double motion_noise = 0.02;
     double multipath = 0;
     bool edges = true, holes = true;
 

@@ -9,6 +9,7 @@
 
 #include "core/angle.hpp"
 #include "core/sensor_preset.hpp"
+#include "core/undistortion.hpp"
 #include "simulator/simulated_source.hpp"
 #include "temporary_folder.hpp"
 
@@ -241,6 +242,49 @@ TEST(Lens, ReadsEachPixelsOwnRay) {
     EXPECT_NE(bent.frame(9).color.pixels, source("&noise=0").frame(9).color.pixels);
     const LaneImage even(320, 240, 4000 | 100ull << 32);
     EXPECT_EQ(lens.distorted(even).pixels, even.pixels);
+}
+
+TEST(Lens, OfAModelIsUndoneByIt) {
+    for (const std::string lens : {"brown:-0.28,0.07,0.001,-0.002", "brown:0.35,0,0,0", "fisheye:0,0,0,0"}) {
+        const SimulatedSource exact = source("&noise=0"), bent = source("&noise=0&lens=" + lens);
+        EXPECT_EQ(bent.camera().depth_distortion, parse_lens(lens));
+        EXPECT_EQ(bent.camera().color_distortion, parse_lens(lens));
+        EXPECT_FALSE(source("&lens_told=0&lens=" + lens).camera().depth_distortion);
+        EXPECT_EQ(source("&noise=0&lens_told=0&lens=" + lens).frame(9).depth.pixels,
+                  bent.frame(9).depth.pixels);
+        const SensorFrame truth = exact.frame(9);
+        SensorFrame frame = bent.frame(9);
+        ASSERT_EQ(frame.depth.width, truth.depth.width);
+        int before = 0, after = 0, seen = 0;
+        const auto count = [&](int& near) {
+            for (std::size_t i = 0; i < frame.depth.pixels.size(); ++i) {
+                const int a = frame.depth.pixels[i], b = truth.depth.pixels[i];
+                near += a != 0 && b != 0 && std::abs(a - b) < 15 ? 1 : 0;
+            }
+        };
+        count(before);
+        const Undistortion undistortion(bent.camera());
+        undistortion.undistort(frame.depth);
+        undistortion.undistort(frame.color);
+        count(after);
+        double off = 0;
+        for (std::size_t i = 0; i < frame.depth.pixels.size(); ++i) {
+            if (frame.depth.pixels[i] == 0 || truth.depth.pixels[i] == 0) continue;
+            off += std::abs(frame.color.pixels[i].g - truth.color.pixels[i].g);
+            ++seen;
+        }
+        EXPECT_GT(after, 0.97 * seen) << lens;
+        EXPECT_LT(before, 0.95 * seen) << lens;
+        EXPECT_LT(off / seen, 3) << lens;
+    }
+}
+
+TEST(Lens, ThatCannotBeIsRefused) {
+    for (const std::string lens : {"brown", "brown:", "brown:1,2", "brown:0,x,0,0", "brown:0,0,0,0,",
+                                   "pinhole:0", "brown:-0.9,0,0,0", "brown:nan,0,0,0"}) {
+        EXPECT_THROW(source("&lens=" + lens), std::invalid_argument) << lens;
+        EXPECT_THROW(source("&lens_told=0&lens=" + lens), std::invalid_argument) << lens;
+    }
 }
 
 TEST(Multipath, MakesCornersTooDeepAndLeavesAWall) {
