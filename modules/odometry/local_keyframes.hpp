@@ -2,6 +2,7 @@
 // The recent keyframes that frames are tracked against.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "core/geometry/pose.hpp"
@@ -23,6 +24,7 @@ struct TrackPoint {
 /// A keyframe that frames are tracked against.
 struct LocalKeyframe {
     int id = -1;
+    std::int64_t utime = 0;  ///< of its depth image, microseconds
     Pose odom_from_keyframe = Pose::Identity();
     std::vector<TrackPoint> points;
     FlowPyramid pyramid;  ///< with derivatives

@@ -9,6 +9,7 @@ int main(int argc, char** argv) {
     planemap::messages::CameraFlag camera;
     camera.add_to(process.flags(), planemap::messages::kCameraOffTheBus);
     process.flags().add(options_of(options));
+    process.flags().add(options_of(options.motion));
     return process.run(argc, argv, [&](planemap::messages::Bus& bus) {
         return std::make_unique<planemap::odometry::OdometryShell>(
             bus, std::make_shared<planemap::messages::FrameDecoder>(bus, camera.read()), options,

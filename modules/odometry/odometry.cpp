@@ -9,6 +9,7 @@
 #include "odometry/keyframe_making.hpp"
 #include "odometry/local_keyframes.hpp"
 #include "odometry/method.hpp"
+#include "odometry/motion_priors.hpp"
 #include "odometry/news.hpp"
 #include "odometry/prepared_frame.hpp"
 #include "odometry/readout.hpp"
@@ -23,10 +24,12 @@ class Odometry::State {
           motion_(options),
           keyframes_(options.local_keyframes),
           relocaliser_(options),
+          priors_(options.motion),
           method_(make_method(options)) {}
 
     OdometryResult process(const OdometryFrame& input);
     void resume(std::span<const Keyframe> keyframes);
+    bool hear(const MotionPrior& prior) { return priors_.hear(prior); }
 
   private:
     /// Ids that the process before may have given without having remembered them.
@@ -37,6 +40,7 @@ class Odometry::State {
     bool may_become_keyframe() const { return old_colors_ == 0 || old_colors_ > kPatience; }
     OdometryResult track(const OdometryFrame& input, const News& news);
     OdometryEstimate stay(std::int64_t utime) const;
+    PriorUse take_prior(const PreparedFrame& frame, Located& located);
     OdometryResult find_again(PreparedFrame& frame);
     OdometryResult restart(PreparedFrame& frame);
     OdometryResult lose(PreparedFrame& frame);
@@ -57,6 +61,7 @@ class Odometry::State {
     CameraMotion motion_;
     LocalKeyframes keyframes_;
     Relocaliser relocaliser_;
+    MotionPriors priors_;
     std::unique_ptr<Method> method_;
     NewsWatch watch_;
     DepthImage no_depth_;    ///< without a reading, of the colour camera's size
@@ -118,7 +123,12 @@ OdometryResult Odometry::State::track(const OdometryFrame& input, const News& ne
     if (resumed_ && !other_camera) return find_again(frame);
     if (starts) return restart(frame);
     std::optional<Located> located = method_->locate(frame, {motion_, keyframes_, relocaliser_});
-    if (located) return follow(frame, *located);
+    if (located) {
+        const PriorUse prior = take_prior(frame, *located);
+        OdometryResult result = follow(frame, *located);
+        result.prior = prior;
+        return result;
+    }
     // What is missing comes with the next image that is new.
     if (const OdometryEstimate stale = stay(frame.utime); !news.is_whole() && is_placed(stale)) {
         OdometryResult result;
@@ -126,6 +136,12 @@ OdometryResult Odometry::State::track(const OdometryFrame& input, const News& ne
         return result;
     }
     return lose(frame);
+}
+
+PriorUse Odometry::State::take_prior(const PreparedFrame& frame, Located& located) {
+    const LocalKeyframe* const keyframe = keyframes_.find(located.keyframe_id);
+    if (keyframe == nullptr || located.relocalised) return PriorUse::kNone;
+    return priors_.apply(located.track, keyframe->utime, frame.utime, frame.camera->body_from_camera);
 }
 
 void Odometry::State::resume(std::span<const Keyframe> keyframes) {
@@ -260,6 +276,7 @@ Keyframe Odometry::State::add_keyframe(PreparedFrame& frame, LocalKeyframe local
                                        const Located* located) {
     Keyframe keyframe = make_keyframe(options_, frame, motion);
     keyframe.id = local.id = next_id_++;
+    local.utime = frame.utime;
     keyframe.odom_from_camera = local.odom_from_keyframe = odom_from_camera;
     if (located != nullptr) {
         keyframe.previous_id = located->keyframe_id;
@@ -283,6 +300,10 @@ Odometry& Odometry::operator=(Odometry&&) noexcept = default;
 
 void Odometry::resume(std::span<const Keyframe> keyframes) {
     state_->resume(keyframes);
+}
+
+bool Odometry::hear(const MotionPrior& prior) {
+    return state_->hear(prior);
 }
 
 OdometryResult Odometry::process(const OdometryFrame& frame) {

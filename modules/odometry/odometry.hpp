@@ -9,6 +9,7 @@
 #include "core/camera.hpp"
 #include "core/image.hpp"
 #include "core/keyframe.hpp"
+#include "odometry/motion_prior.hpp"
 #include "odometry/options.hpp"
 
 namespace planemap::odometry {
@@ -42,6 +43,7 @@ struct News {
 struct OdometryResult {
     /// Which of the frame's images were used: those that are new.
     News news;
+    PriorUse prior = PriorUse::kNone;
     /// Of the depth image's moment (pose_utime = utime).
     OdometryEstimate estimate;
     /// Set when the frame became a keyframe. The estimate is still relative to the one before.
@@ -69,6 +71,10 @@ class Odometry {
     /// ids are not given again, and the camera is lost until it finds a place that one of them saw, or for
     /// max_lost_frames. Call it before the first frame.
     void resume(std::span<const Keyframe> keyframes);
+
+    /// What wheels or an IMU say, of the time before the frames that it is of use for; in order. False: it
+    /// was left out (see MotionPriors). A frame whose own images say all goes on as without.
+    bool hear(const MotionPrior& prior);
 
     /// Throws std::invalid_argument when depth or camera is missing, an image has not the colour camera's
     /// size, or a new camera is not valid; the state is then as it was.

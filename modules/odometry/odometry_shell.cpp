@@ -4,7 +4,10 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <bot_core/pose_t.hpp>
+#include <bot_core/rigid_transform_t.hpp>
 #include <planemap/module_status_t.hpp>
+#include <stdexcept>
 #include <utility>
 
 #include "messages/channels.hpp"
@@ -57,10 +60,28 @@ OdometryShell::OdometryShell(messages::Bus& bus, std::shared_ptr<messages::Frame
         messages::channels::kMap, [this](const messages::RawMessage& m) { on_map(m); }, 1);
     bus_.subscribe(messages::channels::kRegions,
                    status_.guard([this](const messages::RawMessage& m) { on_regions(m); }), 8);
+    if (!options.motion.channel.empty()) hear_priors(options.motion.channel);
     if (!bus_.is_network()) return;
     for (const char* module : {"GRAPH", "MAP", "OCTOMAP"})
         bus_.subscribe(std::string(messages::channels::kStatusPrefix) + module,
                        [this](const messages::RawMessage& m) { on_status(m); });
+}
+
+void OdometryShell::hear_priors(const std::string& channel) {
+    constexpr int kCapacity = 256;
+    if (channel == messages::channels::kPose)
+        throw std::invalid_argument("--motion-channel " + channel +
+                                    ": is what planemap-odometry sends itself, no other's word");
+    bus_.subscribe(channel, status_.guard([this](const messages::RawMessage& m) { on_prior(m); }), kCapacity);
+}
+
+void OdometryShell::on_prior(const messages::RawMessage& message) {
+    const auto pose = messages::decode<bot_core::pose_t>(message.bytes);
+    bot_core::rigid_transform_t body;
+    body.utime = messages::checked_utime(pose.utime, "pose.utime");
+    std::copy(pose.pos, pose.pos + 3, body.trans);
+    std::copy(pose.orientation, pose.orientation + 4, body.quat);
+    if (!odometry_.hear({body.utime, messages::from_message(body)})) status_.count_loss(kPriorBroken);
 }
 
 /// Takes the keyframes that the process before made.
@@ -205,6 +226,13 @@ void OdometryShell::count(const News& news) {
     if (news.depth == News::Image::kRepeated) status_.lost(kDepthRepeats);
 }
 
+void OdometryShell::count(PriorUse prior) {
+    if (prior == PriorUse::kNoMount) status_.lost(kPriorNoMount);
+    if (prior == PriorUse::kStale) status_.lost(kPriorStale);
+    if (prior == PriorUse::kContradictory) status_.lost(kPriorContradicts);
+    if (prior == PriorUse::kDistrusted) status_.lost(kPriorDistrusted);
+}
+
 void OdometryShell::process(const Waiting& input) {
     const messages::Frame& frame = *input.frame;
     OdometryFrame in;
@@ -239,6 +267,7 @@ void OdometryShell::process(const Waiting& input) {
     bus_.publish(messages::channels::kOdometry,
                  messages::to_message(result.estimate, odometry_seq_++, bus_.session()));
     count(result.news);
+    count(result.prior);
     if (result.keyframe) remember_chain(*result.keyframe);
     publish_body(result.estimate, frame.camera());
     if (result.keyframe) publish(*result.keyframe);

@@ -45,6 +45,16 @@ class OdometryShell : public messages::Shell {
     static constexpr const char* kColorLate =
         "colour images left out that are of another time than their depth";
 
+    /// Reasons for motion priors (--motion-channel) that were not used.
+    static constexpr const char* kPriorBroken = "motion priors that are none, came twice or late";
+    static constexpr const char* kPriorNoMount =
+        "frames without their motion prior: camera.json has no body_from_camera";
+    static constexpr const char* kPriorStale = "frames that no motion prior reached";
+    static constexpr const char* kPriorContradicts =
+        "motion priors further from what the camera saw than both allow";
+    static constexpr const char* kPriorDistrusted =
+        "motion priors not used, since others contradicted before";
+
     messages::ModuleStatus& status() override { return status_; }
     /// Goes on with what has waited for too long.
     int poll() override;
@@ -75,6 +85,9 @@ class OdometryShell : public messages::Shell {
     void resume();
     void tend_journal();
     void count(const News& news);
+    void count(PriorUse prior);
+    void hear_priors(const std::string& channel);
+    void on_prior(const messages::RawMessage& message);
     void remember_chain(const Keyframe& keyframe);
     void publish(const Keyframe& keyframe);
     void publish_look(const OdometryResult& result, std::span<const PlanarRegion> regions);

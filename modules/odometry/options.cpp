@@ -3,6 +3,22 @@
 
 namespace planemap::odometry {
 
+OptionList options_of(MotionPriorOptions& options) {
+    using enum Audience;
+    OptionList list("Motion prior");
+    list.add(
+        "motion_channel", options.channel, std::vector<std::string>{},
+        "Channel of bot_core.pose_t on which wheel odometry or an IMU says how the robot's body moves: it "
+        "fills the directions that the camera does not see. Needs body_from_camera in camera.json");
+    list.add("motion_way_sigma", options.sigma_m_per_m, {0, 10},
+             "Standard deviation of a way that it says, as a share of it", kExpert);
+    list.add("motion_turn_sigma", options.sigma_rad_per_rad, {0, 10},
+             "Standard deviation of a turn that it says, as a share of it", kExpert);
+    list.add("motion_max_age", options.max_age_s, {0.001, 10, "s"},
+             "A frame further after its last pose, or between two, goes without it", kExpert);
+    return list;
+}
+
 OptionList options_of(OdometryOptions& options) {
     using enum Audience;
     OptionList list("Odometry");
@@ -50,6 +66,7 @@ OptionList options_of(OdometryOptions& options) {
 
 void OdometryOptions::validate() const {
     check_options("OdometryOptions", *this);
+    check_options("MotionPriorOptions", motion);
 }
 
 }  // namespace planemap::odometry

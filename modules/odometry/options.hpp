@@ -8,9 +8,20 @@
 
 namespace planemap::odometry {
 
+/// Where motion priors are from, and how far they may be off; options_of() says what each is.
+struct MotionPriorOptions {
+    std::string channel;
+    double sigma_m_per_m = 0.05, sigma_rad_per_rad = 0.05;
+    double max_age_s = 0.2;
+};
+
+/// By the names of flags that stand alone. Refers to `options`, which must outlive it.
+OptionList options_of(MotionPriorOptions& options);
+
 /// Options of Odometry; options_of() says what each is.
 struct OdometryOptions {
     std::string method = "planar";
+    MotionPriorOptions motion;  ///< not in the list of options_of(OdometryOptions&): it has its own
 
     int max_points = 300;
     int cell_px = 20;

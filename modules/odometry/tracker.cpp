@@ -18,7 +18,6 @@ constexpr int kSurfaceSteps = 8;       // with the wide gate, and as many with t
 constexpr int kCoarseSteps = 10;       // at each pyramid level
 constexpr double kCoarseStep = 0.002;  // metres and radians; smaller steps end a level
 constexpr double kCoarseGate = 0.15;   // metres from the surface
-constexpr double kWeakDirection = 4;  // information of the data over the guess's below which it is degenerate
 
 /// The points that flow found, as terms; depth is read where the point was at the depth image's time.
 std::vector<PointTerm> make_terms(const OdometryOptions& options, const LocalKeyframe& keyframe,
@@ -188,6 +187,7 @@ std::optional<Track> align_points(const OdometryOptions& options, const LocalKey
     track.tried = static_cast<int>(terms.size());
     track.inliers = result.inliers;
     track.degenerate = is_degenerate(result.information, guess);
+    track.guess_information = guess.information;
     track.pixels = std::move(pixels);
     track.inlier.assign(keyframe.points.size(), 0);
     for (std::size_t i = 0; i < indices.size(); ++i) track.inlier[indices[i]] = result.inlier[i];
@@ -262,6 +262,7 @@ std::optional<Track> track_surface(const OdometryOptions& options, const LocalKe
     track.tried = match.visible;
     track.inliers = match.matched;
     track.degenerate = is_degenerate(track.alignment.information, guess);
+    track.guess_information = guess.information;
     return track;
 }
 

@@ -15,6 +15,9 @@
 
 namespace planemap::odometry {
 
+/// Information of the data over the guess's below which a direction is known from the guess only.
+inline constexpr double kWeakDirection = 4;
+
 /// What is known of a frame's pose before it is tracked.
 struct Guess {
     Pose camera_from_keyframe = Pose::Identity();
@@ -35,7 +38,8 @@ struct Track {
     int tried = 0;                    ///< points that flow found, or samples when only depth was used
     int inliers = 0;
     bool by_features = false;
-    bool degenerate = false;  ///< a direction is known from the guess only
+    bool degenerate = false;                        ///< a direction is known from the guess only
+    Matrix6d guess_information = Matrix6d::Zero();  ///< the guess's part of alignment.information
 };
 
 /// Where a frame is, and how it is known.

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <bot_core/pose_t.hpp>
 #include <chrono>
 #include <thread>
 
@@ -152,6 +153,44 @@ TEST_F(OdometryShellTest, TellsTheBodysPoseAfterALossOnceALoopClosureSaysWhereTh
     ASSERT_FALSE(bodies->empty());
     EXPECT_NEAR(bodies->back().pos[0], 2, 0.02);
     EXPECT_NEAR(bodies->back().pos[1], 0, 0.02);
+}
+
+bot_core::pose_t prior(std::int64_t utime) {
+    bot_core::pose_t pose{};
+    pose.utime = utime;
+    pose.orientation[0] = 1;
+    return pose;
+}
+
+TEST_F(OdometryShellTest, HearsMotionPriorsAmongCorruptOnesAndCountsThem) {
+    OdometryOptions options;
+    options.motion.channel = "WHEELS";
+    OdometryShell shell(bus_, std::make_shared<messages::FrameDecoder>(bus_), options);
+    const auto estimates = collect<odometry_t>(messages::channels::kOdometry);
+    publish_camera();  // which says nothing of a mount
+    bot_core::pose_t bad = prior(900000);
+    bad.orientation[0] = 7;
+    bus_.publish("WHEELS", bad);
+    publish_corrupt("WHEELS", prior(900000));
+    for (int i = 0; i < 5; ++i) {
+        const std::int64_t utime = 1000000 + 33333 * i;
+        bus_.publish("WHEELS", prior(utime));
+        bus_.publish("WHEELS", prior(utime));  // twice
+        bus_.publish(messages::channels::kFrame, frame(utime, 0.01 * i));
+        publish_regions(utime);
+        bus_.drain();
+    }
+    ASSERT_EQ(estimates->size(), 5u);
+    EXPECT_EQ(messages::from_message(estimates->back()).status, TrackingStatus::kTracked);
+    EXPECT_EQ(shell.status().losses().at(OdometryShell::kPriorBroken), 5);
+    EXPECT_EQ(shell.status().losses().at(OdometryShell::kPriorNoMount), 4) << "all but the first frame";
+}
+
+TEST_F(OdometryShellTest, ItsOwnPosesAreNoPrior) {
+    OdometryOptions options;
+    options.motion.channel = messages::channels::kPose;
+    EXPECT_THROW(OdometryShell(bus_, std::make_shared<messages::FrameDecoder>(bus_), options),
+                 std::invalid_argument);
 }
 
 TEST_F(OdometryShellTest, SaysThatTheSensorStartedAgainAndWhatItsPosesAreThen) {
