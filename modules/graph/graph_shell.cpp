@@ -72,6 +72,8 @@ void GraphShell::on_keyframe(const messages::RawMessage& message) {
     const Keyframe keyframe = messages::from_message(received);
     if (came_again(received)) return status_.count_loss("keyframes that came twice");
     if (!keyframe_guard_.admits(received.session, received.seq, received.utime, message.bytes)) return;
+    // One that begins a chain beyond our ids is of an odometry that heard of us.
+    if (keyframe.chain == keyframe.id && graph_.expects(keyframe.id)) odometry_started_again_ = false;
     if (odometry_started_again_ || !graph_.expects(keyframe.id)) {
         refuse(keyframe.id);
         // Of two, nobody knows which is the stray: the graph goes on with the second.
@@ -186,7 +188,7 @@ void GraphShell::refuse(int id) {
     if (id <= last && refused_in_row_ >= kRow && graph_.trajectory().keyframes.size() > 1)
         odometry_started_again_ = true;
     if (odometry_started_again_)
-        text += ": odometry started again; start planemap-graph and planemap-map again, too";
+        text += ": odometry started again; nothing of it is taken until its ids begin after those";
     status_.set_text(text);
     if (is_first || refused_in_row_ == kRow) spdlog::warn("graph: {}", text);
 }

@@ -29,11 +29,10 @@ class Odometry::State {
 
     OdometryResult process(const OdometryFrame& input);
     void resume(std::span<const Keyframe> keyframes);
+    void start_after(int id);
     bool hear(const MotionPrior& prior) { return priors_.hear(prior); }
 
   private:
-    /// Ids that the process before may have given without having remembered them.
-    static constexpr int kIdsLeftOut = 100;
     /// Frames without new colour after which it is no longer waited for.
     static constexpr int kPatience = 15;
     /// A frame without its colour has no points to follow: the next one would be tracked by depth alone.
@@ -155,6 +154,12 @@ void Odometry::State::resume(std::span<const Keyframe> keyframes) {
     resumed_ = true;
 }
 
+void Odometry::State::start_after(int id) {
+    next_id_ = std::max(next_id_, id + 1 + kIdsLeftOut);
+    keyframes_.clear();
+    relocaliser_.clear();
+}
+
 /// After resume(): lost, until a place is known again; after max_lost_frames a part of its own begins.
 OdometryResult Odometry::State::find_again(PreparedFrame& frame) {
     OdometryResult result;
@@ -173,8 +178,7 @@ OdometryResult Odometry::State::find_again(PreparedFrame& frame) {
     LocalKeyframe local = make_local_keyframe(options_, frame, motion);
     if (!can_be_tracked_against(local, options_.min_inliers)) return result;
     resumed_ = false;
-    Keyframe keyframe =
-        add_keyframe(frame, std::move(local), located->odom_from_camera(), motion, &*located);
+    Keyframe keyframe = add_keyframe(frame, std::move(local), located->odom_from_camera(), motion, &*located);
     result.estimate = estimate_at(keyframe);
     result.estimate.features = located->track.tried;
     result.estimate.inliers = located->track.inliers;
@@ -304,6 +308,10 @@ void Odometry::resume(std::span<const Keyframe> keyframes) {
 
 bool Odometry::hear(const MotionPrior& prior) {
     return state_->hear(prior);
+}
+
+void Odometry::start_after(int id) {
+    state_->start_after(id);
 }
 
 OdometryResult Odometry::process(const OdometryFrame& frame) {

@@ -67,10 +67,15 @@ class Odometry {
     Odometry(Odometry&&) noexcept;
     Odometry& operator=(Odometry&&) noexcept;
 
+    /// Ids that the process before may have given without having remembered them.
+    static constexpr int kIdsLeftOut = 100;
+
     /// Goes on where another Odometry ended that had made these keyframes (in order, the newest last): their
     /// ids are not given again, and the camera is lost until it finds a place that one of them saw, or for
     /// max_lost_frames. Call it before the first frame.
     void resume(std::span<const Keyframe> keyframes);
+    /// Ids up to this one are another odometry's: the next frame begins a chain of its own beyond them.
+    void start_after(int id);
 
     /// What wheels or an IMU say, of the time before the frames that it is of use for; in order. False: it
     /// was left out (see MotionPriors). A frame whose own images say all goes on as without.

@@ -100,6 +100,7 @@ void OdometryShell::resume() {
         const Keyframe& first = keyframes.front();
         first_keyframe_ = {first.id, first.utime, first.odom_from_camera};
         first_chain_ = first.chain;
+        newest_id_ = keyframes.back().id + Odometry::kIdsLeftOut;
     }
     if (!keyframes.empty())
         spdlog::info("odometry: knows {} keyframes of {}; lost until it finds a place that they saw",
@@ -124,6 +125,7 @@ void OdometryShell::send_again() {
 
 void OdometryShell::publish(const Keyframe& keyframe) {
     constexpr std::size_t kMostSent = 32;
+    newest_id_ = std::max(newest_id_, keyframe.id);
     const keyframe_t message = messages::to_message(keyframe, keyframe_seq_++, bus_.session());
     std::vector<std::uint8_t> bytes = messages::to_bytes(message);
     if (journal_)
@@ -292,9 +294,18 @@ void OdometryShell::remember_chain(const Keyframe& keyframe) {
 }
 
 void OdometryShell::on_trajectory(const messages::RawMessage& message) {
-    if ((body_.is_known() && apart_.empty()) || !first_keyframe_) return;
     const KeyframeTrajectory trajectory =
         messages::from_message(messages::decode<trajectory_t>(message.bytes));
+    if (const int newest = trajectory.keyframes.empty() ? -1 : trajectory.keyframes.back().id;
+        newest > newest_id_) {
+        odometry_.start_after(newest);
+        newest_id_ = newest;
+        status_.remark(
+            "ids",
+            "the graph knows keyframes of an odometry before this one, which this one does not: its "
+            "ids begin after those, and what it tracks is a component of its own");
+    }
+    if ((body_.is_known() && apart_.empty()) || !first_keyframe_) return;
     const auto named = [&](const Start& start) {
         const auto found = std::find_if(
             trajectory.keyframes.begin(), trajectory.keyframes.end(),

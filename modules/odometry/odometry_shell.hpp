@@ -112,6 +112,7 @@ class OdometryShell : public messages::Shell {
     Looks looks_;
     std::optional<Start> first_keyframe_;
     int first_chain_ = -1;                 ///< of that one
+    int newest_id_ = -1;                   ///< of the keyframes so far, ours and those of before
     std::map<int, Start> apart_;           ///< by chain: those of which it is not known how they lie
     std::map<int, Pose> first_from_odom_;  ///< by chain: those of which it is; the newest
     bool is_silent_ = false;               ///< POSE_BODY is, since that is not known of the present one

@@ -98,6 +98,15 @@ TEST_F(GraphShellTest, AnOdometryThatStartedAgainIsNotTakenForTheFirst) {
     EXPECT_EQ(shell.status().losses().at("keyframes with an id out of order"), 12);
     EXPECT_NE(shell.status().line().find("odometry started again"), std::string::npos)
         << shell.status().line();
+
+    keyframe.chain = 106;  // it heard of the first one's ids, and begins beyond them
+    publish(106);
+    keyframe.previous_id = 106;
+    publish(107);
+    const std::vector<KeyframePose>& named = shell.graph().trajectory().keyframes;
+    ASSERT_EQ(named.size(), 8u);
+    EXPECT_EQ(named[6].component, 106);
+    EXPECT_EQ(named[7].component, 106);
 }
 
 TEST_F(GraphShellTest, SaysThatAPartBegins) {

@@ -193,6 +193,31 @@ TEST_F(OdometryShellTest, ItsOwnPosesAreNoPrior) {
                  std::invalid_argument);
 }
 
+TEST_F(OdometryShellTest, WithoutAJournalItsIdsBeginAfterThoseThatTheGraphKnows) {
+    OdometryShell shell(bus_, std::make_shared<messages::FrameDecoder>(bus_), {});
+    const auto keyframes = collect<keyframe_t>(messages::channels::kKeyframe);
+    publish_camera();
+    const auto see = [&](std::int64_t utime) {
+        bus_.publish(messages::channels::kFrame, frame(utime));
+        publish_regions(utime);
+        bus_.drain();
+    };
+    see(1000000);
+    ASSERT_EQ(keyframes->size(), 1u);
+    EXPECT_EQ(keyframes->front().id, 0);
+    KeyframeTrajectory trajectory;
+    trajectory.keyframes = {{0, 77, Pose::Identity()}, {41, 88, Pose::Identity()}};
+    for (int seq = 0; seq < 2; ++seq) {
+        bus_.publish(messages::channels::kTrajectory, messages::to_message(trajectory, seq));
+        bus_.drain();
+        see(1033333 + 33333 * seq);
+        ASSERT_EQ(keyframes->size(), 2u) << "one new chain";
+        EXPECT_GT(keyframes->back().id, 41);
+        EXPECT_EQ(keyframes->back().previous_id, -1);
+        EXPECT_EQ(keyframes->back().chain, keyframes->back().id);
+    }
+}
+
 TEST_F(OdometryShellTest, SaysThatTheSensorStartedAgainAndWhatItsPosesAreThen) {
     OdometryShell shell(bus_, std::make_shared<messages::FrameDecoder>(bus_), {});
     const auto keyframes = collect<keyframe_t>(messages::channels::kKeyframe);
