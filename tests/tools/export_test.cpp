@@ -77,6 +77,24 @@ TEST_F(ExportTest, KeepsWhatIsNotItsOwn) {
     EXPECT_EQ(bytes("live/planes.json"), bytes("run/planes.json"));
 }
 
+TEST_F(ExportTest, OfALiveSessionsFurtherComponentsNothingIsLost) {
+    map_the_office();
+    const std::filesystem::path live = folder_ / "live";
+    std::filesystem::create_directories(live);
+    for (const char* name : {"plane_map.lcmlog", "plane_map_2.lcmlog"})
+        std::filesystem::copy_file(folder_ / "run/plane_map.lcmlog", live / name);
+    for (const char* name : {"trajectory.txt", "trajectory_2.txt"})
+        std::filesystem::copy_file(folder_ / "run/trajectory.txt", live / name);
+    for (int i = 0; i < 2; ++i) {  // the second time over an earlier export
+        const Outcome outcome =
+            run("planemap-export", (live / "plane_map.lcmlog").string() + " -o " + live.string());
+        ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+        EXPECT_EQ(bytes("live/planes_2.json"), bytes("live/planes.json"));
+        EXPECT_EQ(bytes("live/plane_map_2.lcmlog"), bytes("run/plane_map.lcmlog"));
+        EXPECT_EQ(bytes("live/trajectory_2.txt"), bytes("run/trajectory.txt"));
+    }
+}
+
 TEST_F(ExportTest, ComparesWithTheOctomapBesideTheMap) {
     ASSERT_EQ(run("planemap-run", "'sim:office?frames=20' -q -o " + path("run")).exit_code, 0);
     ASSERT_EQ(run("planemap-export", path("run/plane_map.lcmlog") + " -q -o " + path("out")).exit_code, 0);

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "core/components.hpp"
 #include "core/files.hpp"
 #include "map/map_file.hpp"
 #include "run/map_results.hpp"
@@ -41,10 +42,28 @@ std::vector<std::string> export_names(const ExportOptions& options, const fs::pa
         names.emplace_back("octomap.bt");
         return names;
     }
-    std::erase(names, "plane_map.lcmlog");
-    if (trajectory.empty() || same_file(trajectory, options.output / "trajectory.txt"))
-        std::erase(names, "trajectory.txt");
+    const bool keeps_trajectory =
+        trajectory.empty() || same_file(trajectory, options.output / "trajectory.txt");
+    for (std::size_t number = 1; number <= kMostComponentFiles; ++number) {
+        std::erase(names, component_file("plane_map.lcmlog", number));
+        if (keeps_trajectory || number > 1) std::erase(names, component_file("trajectory.txt", number));
+    }
     return names;
+}
+
+/// What can be had of the maps of further components, where they lie beside the map.
+std::vector<Result> further_components(const ExportOptions& options) {
+    std::vector<Result> results;
+    for (std::size_t number = 2; number <= kMostComponentFiles; ++number) {
+        const fs::path file =
+            options.map.parent_path() / component_file(options.map.filename().string(), number);
+        std::error_code ignored;
+        if (!fs::exists(file, ignored)) break;
+        MapSource source{std::make_shared<const PlaneMap>(map::read_plane_map(file)), nullptr,
+                         [] { return std::nullopt; }};
+        for (Result& result : essential_results(source, number)) results.push_back(std::move(result));
+    }
+    return results;
 }
 
 bool holds_an_export(const fs::path& folder) {
@@ -119,7 +138,7 @@ Exported export_map(const ExportOptions& options, const Json& about) {
     if (!file.empty()) source.trajectory = [&trajectory] { return trajectory; };
     const Json report = report_of(options, map, file.empty() ? nullptr : &trajectory, warnings, about);
     std::vector<Result> results = essential_results(source);
-    for (const auto& more : {report_results(report), drawn_results(source)})
+    for (const auto& more : {further_components(options), report_results(report), drawn_results(source)})
         results.insert(results.end(), more.begin(), more.end());
     try {
         for (const Result& result : results) {
