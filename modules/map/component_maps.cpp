@@ -24,9 +24,17 @@ void ComponentMaps::start_from(const PlaneMap& map) {
 }
 
 void ComponentMaps::add(const Keyframe& keyframe) {
-    const auto known = component_of_.find(keyframe.id);
-    if (known == component_of_.end()) return wait(keyframe);
-    map_of(known->second).add(keyframe);
+    const std::optional<int> component = component_of(keyframe.id);
+    if (!component) return wait(keyframe);
+    map_of(*component).add(keyframe);
+}
+
+std::optional<int> ComponentMaps::component_of(int keyframe_id) const {
+    const auto named =
+        std::lower_bound(named_.begin(), named_.end(), keyframe_id,
+                         [](const KeyframePose& pose, int wanted) { return pose.id < wanted; });
+    if (named == named_.end() || named->id != keyframe_id) return std::nullopt;
+    return named->component;
 }
 
 void ComponentMaps::wait(const Keyframe& keyframe) {
@@ -70,15 +78,15 @@ void ComponentMaps::update(const KeyframeTrajectory& trajectory) {
     }
     join(trajectory);
     order_ = components(trajectory);
-    component_of_.clear();
-    for (const KeyframePose& keyframe : trajectory.keyframes) {
-        component_of_[keyframe.id] = keyframe.component;
-        if (const auto came = waiting_.find(keyframe.id); came != waiting_.end()) {
-            map_of(keyframe.component).add(came->second.keyframe);
-            for (const Look& look : came->second.looks) map_of(keyframe.component).add(look);
-            waiting_.erase(came);
-        }
-    }
+    named_ = trajectory.keyframes;
+    std::erase_if(waiting_, [&](const auto& entry) {
+        const auto& [id, came] = entry;
+        const std::optional<int> component = component_of(id);
+        if (!component) return false;
+        map_of(*component).add(came.keyframe);
+        for (const Look& look : came.looks) map_of(*component).add(look);
+        return true;
+    });
     for (const int component : order_) map_of(component).update(of_component(trajectory, component));
 }
 
@@ -86,8 +94,7 @@ void ComponentMaps::update(const KeyframeTrajectory& trajectory) {
 void ComponentMaps::join(const KeyframeTrajectory& trajectory) {
     std::map<int, int> now_in;  // by the component before
     for (const KeyframePose& keyframe : trajectory.keyframes)
-        if (const auto before = component_of_.find(keyframe.id); before != component_of_.end())
-            now_in[before->second] = keyframe.component;
+        if (const std::optional<int> before = component_of(keyframe.id)) now_in[*before] = keyframe.component;
     for (const auto& [before, now] : now_in) {
         const auto joined = maps_.find(before);
         if (before == now || joined == maps_.end()) continue;

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <map>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/acceleration.hpp"
@@ -64,13 +65,15 @@ class ComponentMaps {
     void wait(const Keyframe& keyframe);
     void join(const KeyframeTrajectory& trajectory);
     PlaneMapper& map_of(int component);
+    /// Of a keyframe that the last trajectory named.
+    std::optional<int> component_of(int keyframe_id) const;
 
     MapOptions options_;
     PlaneIds ids_;
     std::shared_ptr<ToldUp> told_ = std::make_shared<ToldUp>();
-    std::map<int, PlaneMapper> maps_;    ///< by component; at least one
-    std::vector<int> order_;             ///< of the components that the last trajectory named
-    std::map<int, int> component_of_;    ///< of each keyframe that it named
+    std::map<int, PlaneMapper> maps_;  ///< by component; at least one
+    std::vector<int> order_;           ///< of the components that the last trajectory named
+    std::vector<KeyframePose> named_;  ///< by it
     struct Waiting {
         Keyframe keyframe;  ///< without its features
         std::vector<Look> looks;
