@@ -9,18 +9,23 @@ namespace planemap::odometry {
 
 std::optional<Located> PaperMethod::locate(const PreparedFrame& frame, const Surroundings& known) {
     if (!frame.gray) return std::nullopt;
+    std::vector<Feature> features = planar_features(frame);
+    // The next frame is matched with this one's: without any it could not go on from here.
+    if (static_cast<int>(features.size()) < options_.min_inliers) return std::nullopt;
     std::optional<Located> located;
     const LocalKeyframe& keyframe = known.keyframes.current();
-    if (std::optional<Track> found = track(frame, known))
+    if (std::optional<Track> found = track(features, frame, known))
         located = Located{std::move(*found), keyframe.id, keyframe.odom_from_keyframe};
     else
         located = known.relocaliser.locate(frame, known.motion, known.keyframes);
-    if (located) located->filtered = false;
+    if (!located) return std::nullopt;
+    located->filtered = false;
+    last_ = std::move(features);
     return located;
 }
 
-std::optional<Track> PaperMethod::track(const PreparedFrame& frame, const Surroundings& known) {
-    std::vector<Feature> features = planar_features(frame);
+std::optional<Track> PaperMethod::track(const std::vector<Feature>& features, const PreparedFrame& frame,
+                                        const Surroundings& known) const {
     const std::vector<PointTerm> matches =
         match_terms(last_, features, frame, options_.max_descriptor_distance);
     MotionRansacOptions ransac;
@@ -35,7 +40,6 @@ std::optional<Track> PaperMethod::track(const PreparedFrame& frame, const Surrou
     const Pose last_from_keyframe =
         known.motion.odom_from_camera().inverse() * known.keyframes.current().odom_from_keyframe;
     track->alignment.camera_from_keyframe = track->alignment.camera_from_keyframe * last_from_keyframe;
-    last_ = std::move(features);
     return track;
 }
 

@@ -28,7 +28,8 @@ class PaperMethod : public Method {
     void go_on_from(PreparedFrame& frame, const LocalKeyframe& keyframe) override;
 
   private:
-    std::optional<Track> track(const PreparedFrame& frame, const Surroundings& known);
+    std::optional<Track> track(const std::vector<Feature>& features, const PreparedFrame& frame,
+                               const Surroundings& known) const;
     std::vector<Feature> planar_features(const PreparedFrame& frame) const;
 
     OdometryOptions options_;
