@@ -117,6 +117,37 @@ TEST_F(BagTest, DepthInTheColourCamerasFrameIsRegistered) {
     EXPECT_TRUE(open()->camera().registered);
 }
 
+TEST_F(BagTest, LensesAreThoseOfTheirCameraInfo) {
+    write("/camera/depth/camera_info", kStart,
+          camera_info(kWidth, kHeight, 30, "equidistant", {0.01, 0.002, 0, 0}));
+    write("/camera/color/camera_info", kStart,
+          camera_info(kColorWidth, kColorHeight, 55, "plumb_bob", {-0.2, 0.03, 0.001, 0, 0}));
+    write("/camera/depth/image_raw", kStart, depth_image(kStart, "optical"));
+    write("/camera/color/image_raw", kStart, color_image(kStart, "optical"));
+    const auto source = open();
+    EXPECT_EQ(source->camera().depth_distortion,
+              (LensDistortion{LensDistortion::Model::kFisheye, {0.01, 0.002, 0, 0}}));
+    EXPECT_EQ(source->camera().color_distortion,
+              (LensDistortion{LensDistortion::Model::kBrown, {-0.2, 0.03, 0.001, 0, 0}}));
+    SensorFrame frame;
+    ASSERT_EQ(source->next(frame).status, ReadResult::Status::kFrame);
+    EXPECT_EQ(frame.depth(0, 0), 1500) << "images stay as they were";
+}
+
+TEST_F(BagTest, ALensOfAModelThatIsNotKnownIsNoted) {
+    write("/camera/depth/camera_info", kStart,
+          camera_info(kWidth, kHeight, 30, "plumb_bob", {0, 0, 0, 0, 0}));
+    write("/camera/color/camera_info", kStart, camera_info(kColorWidth, kColorHeight, 55, "ftheta", {1, 0}));
+    write("/camera/depth/image_raw", kStart, depth_image(kStart, "optical"));
+    write("/camera/color/image_raw", kStart, color_image(kStart, "optical"));
+    const auto source = open();
+    EXPECT_FALSE(source->camera().depth_distortion) << "zeros are a pinhole";
+    EXPECT_FALSE(source->camera().color_distortion);
+    ASSERT_EQ(source->notes().size(), 2u);
+    EXPECT_THAT(source->notes()[0], HasSubstr("/camera/color/camera_info: known, but not used: distortion of "
+                                              "model ftheta"));
+}
+
 TEST_F(BagTest, CompressedImages) {
     write_infos();
     const auto jpeg = messages::encode_jpeg(RgbImage(64, 48, {9, 9, 9}), 90);

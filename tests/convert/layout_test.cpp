@@ -79,6 +79,32 @@ TEST_F(LayoutTest, DepthAsSensedWithColourOfAnySize) {
     EXPECT_THAT(source->notes(), Contains(HasSubstr("4 times smaller, to 80x60")));
 }
 
+TEST_F(LayoutTest, LensesAreTheirFiles) {
+    image("depth/00001.png", true);
+    image("color/00001.jpg", false);
+    const auto write = [&](const std::string& more) {
+        write_file(folder / "intrinsic.json",
+                   R"({"width": 32, "height": 24, "fx": 30, "fy": 30, "ppx": 16, "ppy": 12, )" + more + "}");
+        return open_layout(folder.path(), {});
+    };
+    const LensDistortion brown{LensDistortion::Model::kBrown, {0.1, -0.02, 0, 0, 0.001}};
+    const auto named = write(R"("model": "Brown Conrady", "coeffs": [0.1, -0.02, 0, 0, 0.001])");
+    EXPECT_EQ(named->camera().depth_distortion, brown);
+    EXPECT_EQ(named->camera().color_distortion, brown) << "depth is aligned to colour as it is";
+    const auto unnamed = write(R"("distortion": [0.1, -0.02, 0, 0, 0.001])");
+    EXPECT_EQ(unnamed->camera().color_distortion, brown);
+    EXPECT_THAT(unnamed->notes(), Contains(HasSubstr("assumed: its distortion is of the model of Brown")));
+    const auto inverse = write(R"("model": "Inverse Brown Conrady", "coeffs": [0.1, -0.02, 0, 0, 0.001])");
+    EXPECT_FALSE(inverse->camera().color_distortion);
+    EXPECT_THAT(inverse->notes(), Contains(HasSubstr("not used: distortion of model Inverse Brown Conrady")));
+    EXPECT_FALSE(
+        write(R"("model": "Inverse Brown Conrady", "coeffs": [0, 0, 0, 0, 0])")->camera().color_distortion);
+    EXPECT_EQ(write(R"("model": "Kannala Brandt4", "coeffs": [0.1, 0, 0, 0, 0])")->camera().color_distortion,
+              (LensDistortion{LensDistortion::Model::kFisheye, {0.1, 0, 0, 0}}));
+    EXPECT_THAT(test::error_of([&] { with_color_small_enough(write(R"("coeffs": [-9, 0, 0, 0, 0])")); }),
+                HasSubstr("monotonic"));
+}
+
 TEST_F(LayoutTest, FilesByTheirStreamsAndStampsInMilliseconds) {
     image("shot_Depth_1600000000100.5.png", true);
     image("shot_Color_1600000000101.5.png", false);

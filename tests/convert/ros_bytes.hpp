@@ -55,9 +55,11 @@ inline RosBytes image(std::int64_t utime, const std::string& frame, std::uint32_
         .data(data);
 }
 
-inline RosBytes camera_info(std::uint32_t width, std::uint32_t height, double f) {
+inline RosBytes camera_info(std::uint32_t width, std::uint32_t height, double f,
+                            const std::string& model = "plumb_bob", const std::vector<double>& lens = {}) {
     RosBytes info("sensor_msgs/CameraInfo");
-    info.header(1, "optical").number(height).number(width).text("plumb_bob").number(std::uint32_t{0});
+    info.header(1, "optical").number(height).number(width).text(model);
+    info.number(static_cast<std::uint32_t>(lens.size())).numbers(lens);
     info.numbers({f, 0, width / 2.0, 0, f, height / 2.0, 0, 0, 1});
     return info.numbers(std::vector<double>(9)).numbers(std::vector<double>(12));
 }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "convert/bag_reader.hpp"
+#include "convert/lens_of.hpp"
 #include "convert/pixels.hpp"
 #include "convert/ros_messages.hpp"
 #include "core/geometry/pose.hpp"
@@ -21,7 +22,6 @@ namespace planemap::convert {
 namespace {
 
 constexpr const char* kRealSenseImage = "/image/data";
-constexpr const char* kNoRectification = "known, but not used: the distortion of ";
 constexpr std::size_t kMaxTransforms = 10000;
 constexpr std::size_t kMaxWaiting = 300;  ///< images that wait for partners: 10 s
 
@@ -61,6 +61,12 @@ struct ImageTopic {
     }
 };
 
+/// What a CameraInfo says.
+struct SaidCamera {
+    PinholeCamera pinhole;
+    std::optional<LensDistortion> lens;
+};
+
 /// What a bag holds besides images, and where its cameras are.
 class BagContents {
   public:
@@ -86,7 +92,7 @@ class BagContents {
         return topic.is_realsense() ? without_end(topic.name, kRealSenseImage) + "/info/camera_info"
                                     : parent(topic.base()) + "/camera_info";
     }
-    std::optional<PinholeCamera> pinhole(const ImageTopic& topic, std::vector<std::string>& notes) const;
+    std::optional<SaidCamera> camera(const ImageTopic& topic, std::vector<std::string>& notes) const;
     std::optional<Pose> color_from_depth(const ImageTopic& color, const ImageTopic& depth) const;
     double units_per_metre(const ImageTopic& depth) const;
     std::string serial() const;
@@ -137,12 +143,13 @@ void BagContents::add_transforms() {
     }
 }
 
-std::optional<PinholeCamera> BagContents::pinhole(const ImageTopic& topic,
-                                                  std::vector<std::string>& notes) const {
+std::optional<SaidCamera> BagContents::camera(const ImageTopic& topic,
+                                              std::vector<std::string>& notes) const {
     const auto bytes = first(info_topic(topic), "sensor_msgs/CameraInfo");
     if (!bytes) return std::nullopt;
     const RosCameraInfo info = read_camera_info(*bytes);
-    PinholeCamera camera;
+    SaidCamera said;
+    PinholeCamera& camera = said.pinhole;
     camera.width = static_cast<int>(std::min<std::uint32_t>(info.width, 100000));
     camera.height = static_cast<int>(std::min<std::uint32_t>(info.height, 100000));
     const bool rectified = (holds(topic.name, "rect") || holds(topic.name, "registered")) && info.P[0] > 0;
@@ -150,10 +157,11 @@ std::optional<PinholeCamera> BagContents::pinhole(const ImageTopic& topic,
         camera.fx = info.P[0], camera.fy = info.P[5], camera.cx = info.P[2], camera.cy = info.P[6];
     } else {
         camera.fx = info.K[0], camera.fy = info.K[4], camera.cx = info.K[2], camera.cy = info.K[5];
-        if (std::any_of(info.D.begin(), info.D.end(), [](double d) { return std::abs(d) > 1e-6; }))
-            notes.push_back(file_ + ": " + kNoRectification + topic.name);
+        SaidLens lens = lens_of(info.distortion_model, info.D);
+        said.lens = std::move(lens.lens);
+        if (!lens.note.empty()) notes.push_back(file_ + ": " + info_topic(topic) + ": " + lens.note);
     }
-    return camera;
+    return said;
 }
 
 /// The transform that RealSense's SDK writes: of points of the streams' common reference into the stream's.
@@ -250,18 +258,22 @@ constexpr const char* kGiveCamera = "; give --camera camera.json";
 /// Throws std::runtime_error (reason only) if the bag does not say what camera it is.
 CameraInfo camera_of(const BagContents& bag, const Choice& choice, std::vector<std::string>& notes) {
     CameraInfo camera;
-    const auto depth = bag.pinhole(choice.depth, notes);
+    const auto depth = bag.camera(choice.depth, notes);
     if (!depth) throw std::runtime_error("no CameraInfo on " + bag.info_topic(choice.depth) + kGiveCamera);
     camera.serial = bag.serial();
-    camera.depth = camera.color = *depth;
+    camera.depth = camera.color = depth->pinhole;
+    camera.depth_distortion = camera.color_distortion = depth->lens;
     camera.depth_units_per_metre = bag.units_per_metre(choice.depth);
     if (choice.color) {
-        const auto color = bag.pinhole(*choice.color, notes);
+        const auto color = bag.camera(*choice.color, notes);
         camera.registered = holds(choice.depth.name, "aligned") || holds(choice.depth.name, "registered") ||
                             (!choice.depth.is_realsense() && choice.depth.frame == choice.color->frame);
         if (!color && !camera.registered)
             throw std::runtime_error("no CameraInfo on " + bag.info_topic(*choice.color) + kGiveCamera);
-        if (color) camera.color = *color;
+        if (color) {
+            camera.color = color->pinhole;
+            camera.color_distortion = color->lens;
+        }
         if (!camera.registered) {
             const auto color_from_depth = bag.color_from_depth(*choice.color, choice.depth);
             if (!color_from_depth) {

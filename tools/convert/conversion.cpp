@@ -25,6 +25,7 @@
 #include "results/new_file.hpp"
 #include "results/progress_line.hpp"
 #include "sensor/source.hpp"
+#include "sensor/undistorted_source.hpp"
 #include "simulate/recording.hpp"
 #include "simulator/simulated_source.hpp"
 
@@ -168,8 +169,10 @@ TumFolder write_folder(FrameSource& source, const Trajectory& truth, const fs::p
     return written;
 }
 
-/// As a Kinect v1 would have sent it.
-TumFolder write_kinect(FrameSource& source, const fs::path& output) {
+/// As a Kinect v1 would have sent it, which cannot say what its lens does.
+TumFolder write_kinect(std::unique_ptr<FrameSource> sensed, const fs::path& output) {
+    const std::unique_ptr<FrameSource> pinhole = sensor::undistorted(std::move(sensed));
+    FrameSource& source = *pinhole;
     const std::size_t frames =
         camera::write_fakenect(source, output, 0, [](const SensorFrame& frame, const PinholeCamera& camera) {
             return frame.color_jpeg.empty()
@@ -242,7 +245,7 @@ void convert(const std::string& input, const fs::path& output, const ConvertOpti
         options.to == "log" || (options.to == "auto" && (end == ".lcmlog" || end == ".lcm" || end == ".log"));
     std::unique_ptr<FrameSource> source = open_input(input, options);
     if (options.to == "fakenect") {
-        print(output.string() + ": " + counts_text(write_kinect(*source, output)) + "\n");
+        print(output.string() + ": " + counts_text(write_kinect(std::move(source), output)) + "\n");
         return;
     }
     const Trajectory truth = truth_of(input, *source);

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "convert/lens_of.hpp"
 #include "convert/pixels.hpp"
 #include "core/camera_file.hpp"
 #include "core/files.hpp"
@@ -134,6 +135,7 @@ class CameraFiles {
     CameraInfo aligned(const fs::path& file) {
         CameraInfo camera;
         camera.depth = camera.color = pinhole(file, camera);
+        camera.depth_distortion = camera.color_distortion = lens(file);
         notes_.push_back(file.string() +
                          ": assumed: depth is aligned to colour, as Open3D's recorders do it" +
                          units_note(camera));
@@ -144,9 +146,12 @@ class CameraFiles {
         camera.depth_units_per_metre = options_.depth_units_per_metre;
         if (!color.empty()) camera.color = pinhole(color, camera);
         camera.depth = pinhole(depth, camera);
+        camera.depth_distortion = lens(depth);
         if (color.empty()) {
             camera.color = camera.depth;
+            camera.color_distortion = camera.depth_distortion;
         } else {
+            camera.color_distortion = lens(color);
             camera.registered = false;
             camera.color_from_depth = transform(pose);
         }
@@ -202,13 +207,23 @@ class CameraFiles {
             const double scale = number(object, {"depth_scale"}, file);
             if (scale > 0) camera.depth_units_per_metre = scale < 1 ? std::round(1e3 / scale) / 1e3 : scale;
         }
+        return out;
+    }
+    /// "coeffs" and "model" as RealSense's SDK names them, or "distortion"; without a model brown, which the
+    /// note says.
+    std::optional<LensDistortion> lens(const fs::path& file) {
+        const json object = read_json_object(file);
         for (const char* key : {"coeffs", "distortion"}) {
             if (!object.contains(key) || !object[key].is_array()) continue;
-            const auto all = numbers(object[key], file, key);
-            if (std::any_of(all.begin(), all.end(), [](double d) { return std::abs(d) > 1e-6; }))
-                notes_.push_back(file.string() + ": known, but not used: the distortion");
+            const bool is_named = object.contains("model") && object["model"].is_string();
+            const SaidLens said =
+                lens_of(is_named ? object["model"].get<std::string>() : "", numbers(object[key], file, key));
+            if (!said.note.empty()) notes_.push_back(file.string() + ": " + said.note);
+            if (said.lens && !is_named)
+                notes_.push_back(file.string() + ": assumed: its distortion is of the model of Brown");
+            return said.lens;
         }
-        return out;
+        return std::nullopt;
     }
     Pose transform(const fs::path& file) {
         const json object = read_json_object(file);

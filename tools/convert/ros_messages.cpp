@@ -84,7 +84,7 @@ RosCameraInfo read_camera_info(std::span<const std::uint8_t> bytes) {
     in.header();
     info.height = in.number<std::uint32_t>();
     info.width = in.number<std::uint32_t>();
-    in.text();  // distortion_model
+    info.distortion_model = in.text();
     const std::uint32_t count = in.number<std::uint32_t>();
     Bytes distortion(in.take(std::size_t{count} * sizeof(double)));
     for (std::uint32_t i = 0; i < count; ++i) info.D.push_back(distortion.number<double>());

@@ -43,6 +43,7 @@ RosCompressedImage read_compressed_image(std::span<const std::uint8_t> bytes);
 /// sensor_msgs/CameraInfo, the part that is used.
 struct RosCameraInfo {
     std::uint32_t height = 0, width = 0;
+    std::string distortion_model;
     std::vector<double> D;
     std::array<double, 9> K{};
     std::array<double, 12> P{};
