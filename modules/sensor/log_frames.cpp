@@ -126,6 +126,8 @@ LogFrames::Found LogFrames::next(LogEvent& event) {
         if (!options_.camera_is_given && event.channel == messages::channels::kCameraInfo)
             return Found::kCamera;
         if (event.channel == messages::channels::kAcceleration) return Found::kAcceleration;
+        if (!options_.motion_channel.empty() && event.channel == options_.motion_channel)
+            return Found::kMotion;
     }
     return Found::kEnd;
 }

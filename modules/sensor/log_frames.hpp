@@ -19,6 +19,7 @@ namespace planemap::sensor {
 struct LogFramesOptions {
     std::string channel;           ///< of the frames; empty: the first one that has depth
     bool camera_is_given = false;  ///< the log's own descriptions of the camera are not looked at
+    std::string motion_channel{};  ///< whose bot_core.pose_t next() gives, too; empty: none
     FrameRange frames{};           ///< those that next() gives
 };
 
@@ -32,6 +33,7 @@ class LogFrames {
         kBroken,        ///< a frame that is none; fault() says why
         kCamera,        ///< the event is a camera_info_t on PLANEMAP_CAMERA_INFO
         kAcceleration,  ///< the event is one on PLANEMAP_ACCELERATION
+        kMotion,        ///< the event is one on the motion channel
         kEnd,
     };
 

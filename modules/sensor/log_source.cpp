@@ -31,6 +31,8 @@ ReadResult LogSource::next(SensorFrame& frame) {
             case LogFrames::Found::kAcceleration:
                 hear_acceleration(event);
                 continue;
+            case LogFrames::Found::kMotion:  // not asked for
+                continue;
             case LogFrames::Found::kBroken:
                 return broken(event, log_.fault());
             case LogFrames::Found::kFrame:

@@ -23,6 +23,7 @@ struct SourceOptions {
     FrameRange frames{};                 ///< what next() gives; as if the source had no others
     std::optional<CameraInfo> camera{};  ///< instead of what the input says of its camera
     std::string channel{};               ///< of a log: whose frames; empty: the first that has depth
+    std::string motion_channel{};        ///< of a log: what planemap-run plays beside the frames; empty: none
     double duration_s = 0;               ///< a live camera ends then, by the clock; 0: never
     camera::CameraRequest device{};      ///< of a camera or its recording; `described` is `camera` above
 

@@ -69,9 +69,14 @@ std::string options_document() {
     sensor::SensorShellOptions sensor;
     simulator::SimulatorOptions simulator;
     camera::CameraOptions camera;
+    odometry::MotionPriorOptions motion;
     return kIntroduction + section<segmentation::SegmentationOptions>("--segmentation-") +
-           section<odometry::OdometryOptions>("--odometry-") + section<graph::GraphOptions>("--graph-") +
-           section<map::MapOptions>("--map-") + section<octomap::OctomapOptions>("--octomap-") +
+           section<odometry::OdometryOptions>("--odometry-") +
+           section(options_of(motion), "--",
+                   "Of `planemap-run` (from a log) and `planemap-odometry` "
+                   "([odometry.md](odometry.md#motion-priors)).") +
+           section<graph::GraphOptions>("--graph-") + section<map::MapOptions>("--map-") +
+           section<octomap::OctomapOptions>("--octomap-") +
            section(sensor::pacing_of(sensor), "--", "Of `planemap-sensor`.") +
            section(sensor::encoding_of(sensor), "--", "Of `planemap-sensor` and `planemap-simulate`.") +
            section(options_of(camera), "--camera-",

@@ -94,6 +94,7 @@ class LogInput : public Input {
         : bus_(bus),
           log_(name, {.channel = options.channel,
                       .camera_is_given = options.camera.has_value(),
+                      .motion_channel = options.motion_channel,
                       .frames = options.frames}) {
         if (log_.camera()) bus_.publish_bytes(messages::channels::kCameraInfo, log_.camera_bytes());
     }
@@ -121,6 +122,10 @@ class LogInput : public Input {
                 }
                 if (found == Found::kAcceleration) {
                     bus_.publish_bytes(messages::channels::kAcceleration, event.bytes);
+                    continue;
+                }
+                if (found == Found::kMotion) {
+                    bus_.publish_bytes(event.channel, event.bytes);
                     continue;
                 }
                 ++frames_;

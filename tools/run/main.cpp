@@ -56,6 +56,7 @@ void add_run_flags(messages::Flags& flags, RunOptions& options) {
     flags.add(camera::options_of(options.source.device.options), "camera-");
     flags.add(options_of(options.pipeline.segmentation), "segmentation-");
     flags.add(options_of(options.pipeline.odometry), "odometry-");
+    flags.add(options_of(options.pipeline.odometry.motion));
     flags.add(options_of(options.pipeline.graph), "graph-");
     flags.add(options_of(options.pipeline.map.map), "map-");
     flags.add(options_of(options.pipeline.octomap), "octomap-");
@@ -151,6 +152,7 @@ int run(RunOptions options, const nlohmann::ordered_json& about) {
     options.pipeline.camera = options.camera.read();
     if (!options.poses.empty()) options.pipeline.poses = read_given_poses(options.poses);
     options.source.camera = options.pipeline.camera;
+    options.source.motion_channel = options.pipeline.odometry.motion.channel;
     if (!options.frames.empty()) options.source.frames = parse_frame_range(options.frames);
     messages::catch_stop_signals();
 

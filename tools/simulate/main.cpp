@@ -7,8 +7,10 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "core/body_motion.hpp"
 #include "core/files.hpp"
 #include "core/standard_output.hpp"
+#include "messages/convert.hpp"
 #include "messages/process.hpp"
 #include "results/result_folder.hpp"
 #include "sensor/sensor_shell.hpp"
@@ -62,22 +64,37 @@ std::string log_name(const std::filesystem::path& output) {
                              (output / "office.lcmlog").string());
 }
 
+struct SimulateOptions {
+    sensor::SensorShellOptions sensor;
+    std::string motion_channel;  ///< on which the robot says how it moved; empty: it does not
+};
+
+bot_core::pose_t pose_message(const StampedPose& stamped) {
+    BodyMotion motion;
+    motion.local_from_body = stamped.world_from_camera;  // of another frame than its name says
+    return messages::to_message(motion, stamped.utime);
+}
+
 struct Simulated {
     std::int64_t frames = 0, bytes = 0;
     std::size_t total = 0;
 };
 
 /// Makes log and truth in the folder's workspace, the truth first: it is there at once.
-Simulated make_results(const std::string& world, const sensor::SensorShellOptions& options,
+Simulated make_results(const simulator::SimulatorOptions& world, const SimulateOptions& options,
                        const std::string& log, ResultFolder& results) {
-    auto source = std::make_unique<simulator::SimulatedSource>(simulator::parse_simulator_name(world));
+    auto source = std::make_unique<simulator::SimulatedSource>(world);
+    const Trajectory motion = options.motion_channel.empty() ? Trajectory() : source->body_motion();
     Simulated simulated;
     simulated.total = source->size().value_or(0);
     results.make({kTruth, [&](const auto& file) { write_trajectory(file, source->ground_truth()); }});
     results.make({kPlanes, [&](const auto& file) { simulator::write_planes_truth(file, *source, log); }});
     messages::Bus bus("memq://");
-    sensor::SensorShell sensor(bus, std::move(source), options);
+    sensor::SensorShell sensor(bus, std::move(source), options.sensor);
+    std::size_t told = 0;
     const auto show = [&](std::int64_t frames) {
+        for (; told < motion.size() && motion[told].utime <= sensor.last_utime(); ++told)
+            bus.publish(options.motion_channel, pose_message(motion[told]));
         if (frames % 100 != 0) return;
         std::fprintf(stderr, "planemap-simulate: frame %lld of %zu\n", static_cast<long long>(frames),
                      simulated.total);
@@ -88,10 +105,11 @@ Simulated make_results(const std::string& world, const sensor::SensorShellOption
     return simulated;
 }
 
-int simulate(const std::string& world, const std::filesystem::path& output,
-             const sensor::SensorShellOptions& options) {
+int simulate(const std::string& name, const std::filesystem::path& output, const SimulateOptions& options) {
     messages::catch_stop_signals();
-    simulator::parse_simulator_name(world);  // a wrong name is seen before anything is touched
+    simulator::SimulatorOptions world =
+        simulator::parse_simulator_name(name);  // a wrong name is seen before anything is touched
+    if (!options.motion_channel.empty()) world.mounted = true;
     const std::string log = log_name(output);
     const std::filesystem::path folder = output.parent_path().empty() ? "." : output.parent_path();
     refuse_foreign_truth(folder, log);
@@ -132,14 +150,17 @@ int main(int argc, char** argv) {
             planemap::simulator::simulator_help());
     std::string world = "sim:office";
     std::filesystem::path output;
-    planemap::sensor::SensorShellOptions options;
+    planemap::SimulateOptions options;
     flags.add_positional("world", world, "Simulator name, see above; default: sim:office", false);
     flags.add("o,output", output, "The log to write");
     flags.required();
-    flags.add(encoding_of(options));
+    flags.add("motion-channel", options.motion_channel,
+              "Channel on which the robot's wheels say how it moved (bot_core.pose_t, 50 Hz, off by "
+              "motion_noise), for --motion-channel of planemap-run; makes the camera `mounted`");
+    flags.add(encoding_of(options.sensor));
     return planemap::messages::run_program(flags, argc, argv, [&] {
         planemap::messages::start_logging(flags.program(), false);
-        options.speed = 0;  // as fast as it can be written
+        options.sensor.speed = 0;  // as fast as it can be written
         return planemap::simulate(world, output, options);
     });
 }
