@@ -28,12 +28,14 @@ const std::map<std::string, KnownWorld>& worlds() {
         {"door", {&make_door, "the office from one place; its door, closed before, opens"}},
         {"glass", {&make_glass, "the office with a mirror, a pane of glass and a black cupboard"}},
         {"moved", {&make_moved, "the office from one place; a box moves by 35 cm"}},
+        {"mural", {&make_mural, "the room of sim:wallpaper, whose pattern never comes again"}},
         {"office", {&make_office, "a furnished room and a corridor; has places to visit"}},
         {"rooms", {&make_rooms, "20 furnished rooms along a corridor, entered one after another"}},
         {"twins", {&make_twins, "two rooms that nothing tells apart, and a corridor"}},
         {"vanishing", {&make_vanishing, "the office from one place; a box vanishes"}},
         {"walker", {&make_walker, "the office from one place; a person walks in, stands and leaves"}},
         {"wall", {&make_wall, "along a wall of bare paint"}},
+        {"wallpaper", {&make_wallpaper, "an empty room of 5 x 4 m whose wall pattern repeats every 2 m"}},
     };
     return kWorlds;
 }

@@ -184,6 +184,12 @@ World make_walker(std::uint64_t seed, double texel_scale = 1);
 /// Twenty furnished rooms on both sides of a corridor of 46 m; the tour enters one after another.
 World make_rooms(std::uint64_t seed, double texel_scale = 1);
 
+/// An empty room of 5 x 4 m. Of the wallpaper, what stands on each wall comes again every 2 m, to the last
+/// texel, so that a view of one wall alone fits two places and more; of the mural, in the same room, nothing
+/// does.
+World make_wallpaper(std::uint64_t seed, double texel_scale = 1);
+World make_mural(std::uint64_t seed, double texel_scale = 1);
+
 /// Thousands of small boxes any way up around the camera, 4 to 12 cm wide: texture, and no plane.
 World make_clutter(std::uint64_t seed, double texel_scale = 1);
 

@@ -22,7 +22,7 @@ std::vector<World> all_worlds() {
     std::vector<World> worlds;
     for (const auto make :
          {&make_office, &make_building, &make_twins, &make_wall, &make_clutter, &make_glass, &make_appearing,
-          &make_vanishing, &make_moved, &make_door, &make_walker, &make_rooms})
+          &make_vanishing, &make_moved, &make_door, &make_walker, &make_rooms, &make_wallpaper, &make_mural})
         worlds.push_back(make(3, kCoarse));
     return worlds;
 }
@@ -117,6 +117,44 @@ TEST(Twins, WhatIsOnOnePlaneIsOneSurface) {
     }
     EXPECT_EQ(north_walls, 1);
     EXPECT_EQ(west_walls, 2);
+}
+
+/// Pixels that differ between two views of one wall that are 2 m apart along it, of 160 x 120. `right` is as
+/// seen from the place.
+int differing_two_metres_on(const World& room, const Vector3d& place, const Vector3d& right) {
+    const PinholeCamera camera{160, 120, 131, 131, 79.5, 59.5};
+    Pose here = Pose::Identity();
+    here.linear() << right, -Vector3d::UnitZ(), Vector3d::UnitZ().cross(right);
+    here.translation() = place;
+    Pose there = here;
+    there.translation() += 2 * right;
+    LaneImage seen_here(160, 120), seen_there(160, 120);
+    shade(room, render_view(room, camera, here), 1, seen_here);
+    shade(room, render_view(room, camera, there), 1, seen_there);
+    int different = 0;
+    for (std::size_t k = 0; k < seen_here.pixels.size(); ++k)
+        different += seen_here.pixels[k] != seen_there.pixels[k] ? 1 : 0;
+    return different;
+}
+
+TEST(Wallpaper, ComesAgainEveryTwoMetresAndTheMuralDoesNot) {
+    const Vector3d before_north(1.5, 2.2, 1.3), east = Vector3d::UnitX();
+    const Vector3d before_west(1.9, 1.0, 1.3), north = Vector3d::UnitY();
+    const World wallpaper = make_wallpaper(1, kCoarse), mural = make_mural(1, kCoarse);
+    EXPECT_LT(differing_two_metres_on(wallpaper, before_north, east), 200) << "rounding at edges only";
+    EXPECT_LT(differing_two_metres_on(wallpaper, before_west, north), 200) << "rounding at edges only";
+    EXPECT_GT(differing_two_metres_on(mural, before_north, east), 8000);
+    EXPECT_GT(differing_two_metres_on(mural, before_west, north), 8000);
+}
+
+TEST(Wallpaper, IsCutAtTheCorners) {
+    for (const World& room : {make_wallpaper(1, kCoarse), make_mural(1, kCoarse)})
+        for (const Rectangle& rectangle : room.rectangles)
+            for (const Vector3d& corner : rectangle.corners()) {
+                EXPECT_GE(corner.minCoeff(), -1e-9);
+                EXPECT_LE(corner.x(), 5 + 1e-9);
+                EXPECT_LE(corner.y(), 4 + 1e-9);
+            }
 }
 
 TEST(Wall, TheMiddleOfTheTourSeesNothingButPaint) {
