@@ -60,7 +60,7 @@ class PoseGraph::Impl {
     void append_after_missing(int from, KeyframeNode node, const Matrix6d& covariance);
     void append_after_gap(KeyframeNode node);
     void close_loops();
-    void add_loop(int node, const Verification& found);
+    void add_loop(int node, const places::Verification& found);
     void carry_part(int node, const Pose& node_from_newest);
     double sight(const Keyframe& keyframe);
     void let_go(int node);
@@ -100,7 +100,7 @@ void PoseGraph::Impl::start_anew() {
 /// Adds the node, places it and ties it to the previous one.
 void PoseGraph::Impl::append(const Keyframe& keyframe) {
     KeyframeNode node{keyframe.id, keyframe.utime, keyframe.chain, keyframe.odom_from_camera,
-                      make_view(keyframe, options_.max_features)};
+                      places::make_view(keyframe, options_.max_features)};
     counts_.features_left_out += keyframe.features.size() - node.view.points.size();
     search_.add(node.view);
     topology_.add_node();
@@ -176,7 +176,7 @@ void PoseGraph::Impl::close_loops() {
     }
 }
 
-void PoseGraph::Impl::add_loop(int node, const Verification& found) {
+void PoseGraph::Impl::add_loop(int node, const places::Verification& found) {
     carry_part(node, found.a_from_b);
     const KeyframeNode &older = keyframes_[node], &newest = keyframes_.back();
     const std::int64_t number = history_.add({older.id, newest.id, older.utime, newest.utime, found.a_from_b,

@@ -54,7 +54,7 @@ void Keyframes::remove(int node, int keeper) {
 
 std::size_t Keyframes::memory_bytes() const {
     std::size_t bytes = 0;
-    for (const KeyframeNode& node : nodes_) bytes += sizeof node + graph::memory_bytes(node.view);
+    for (const KeyframeNode& node : nodes_) bytes += sizeof node + places::memory_bytes(node.view);
     return bytes;
 }
 

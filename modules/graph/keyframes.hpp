@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/geometry/pose.hpp"
-#include "graph/keyframe_view.hpp"
 #include "graph/node_index.hpp"
+#include "places/keyframe_view.hpp"
 
 namespace planemap::graph {
 
@@ -16,7 +16,7 @@ struct KeyframeNode {
     std::int64_t utime = 0;
     int chain = -1;  ///< Keyframe::chain
     Pose odom_from_camera = Pose::Identity();
-    KeyframeView view;
+    places::KeyframeView view;
 };
 
 /// The keyframes of a graph, numbered without gaps by ascending id, and where they stand. Numbers change when

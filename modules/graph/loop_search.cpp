@@ -36,7 +36,7 @@ double jump(const Pose& expected, const Pose& node_from_newest) {
 
 }  // namespace
 
-void LoopSearch::remove(int node, const KeyframeView& view) {
+void LoopSearch::remove(int node, const places::KeyframeView& view) {
     index_.remove(place_of_[at(node)], view.descriptors);
     place_of_.erase(place_of_.begin() + node);
 }
@@ -53,7 +53,7 @@ std::vector<int> LoopSearch::candidates(const Keyframes& keyframes, const Topolo
     return found;
 }
 
-std::vector<double> LoopSearch::appearance_scores(const KeyframeView& view,
+std::vector<double> LoopSearch::appearance_scores(const places::KeyframeView& view,
                                                   const std::vector<bool>& near) const {
     const std::vector<double> by_place = index_.scores(view.descriptors);
     std::vector<double> scores(place_of_.size(), 0.0);
@@ -82,13 +82,13 @@ std::vector<double> LoopSearch::place_scores(const Keyframes& keyframes, const s
     return scores;
 }
 
-std::optional<Verification> LoopSearch::verified(int node, const Keyframes& keyframes,
-                                                 const Topology& topology,
-                                                 const std::vector<Drift>& drifts) const {
+std::optional<places::Verification> LoopSearch::verified(int node, const Keyframes& keyframes,
+                                                         const Topology& topology,
+                                                         const std::vector<Drift>& drifts) const {
     const auto seed = static_cast<std::uint64_t>(node) << 32 | static_cast<std::uint64_t>(keyframes.newest());
-    const Verification found =
+    const places::Verification found =
         verify(keyframes[node].view, keyframes.back().view, verification_options(options_), seed);
-    if (found.verdict != Verdict::kAccepted) return std::nullopt;
+    if (found.verdict != places::Verdict::kAccepted) return std::nullopt;
     const Pose expected = keyframes.between(node, keyframes.newest());
     if (!fits_odometry(expected, drifts[at(node)], found.a_from_b)) return std::nullopt;
     if (!fits_surroundings(node, keyframes, topology, drifts, found.a_from_b)) return std::nullopt;

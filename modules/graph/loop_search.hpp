@@ -6,9 +6,9 @@
 
 #include "graph/keyframes.hpp"
 #include "graph/options.hpp"
-#include "graph/place_index.hpp"
 #include "graph/topology.hpp"
-#include "graph/verification.hpp"
+#include "places/place_index.hpp"
+#include "places/verification.hpp"
 
 namespace planemap::graph {
 
@@ -20,9 +20,9 @@ class LoopSearch {
     explicit LoopSearch(const GraphOptions& options) : options_(options) {}
 
     /// The newest keyframe's view, before it is asked for.
-    void add(const KeyframeView& view) { place_of_.push_back(index_.add(view.descriptors)); }
+    void add(const places::KeyframeView& view) { place_of_.push_back(index_.add(view.descriptors)); }
     /// A keyframe goes: the numbers of later ones become less by one.
-    void remove(int node, const KeyframeView& view);
+    void remove(int node, const places::KeyframeView& view);
 
     /// Nodes that are worth to be verified, the best first: those that look like the newest one, then those
     /// that should see the same from where they stand. `drifts` is how far odometry may have gone astray
@@ -33,13 +33,15 @@ class LoopSearch {
 
     /// The loop closure from a node to the newest one, if their views agree and neither odometry nor what was
     /// seen around them speaks against it.
-    std::optional<Verification> verified(int node, const Keyframes& keyframes, const Topology& topology,
-                                         const std::vector<Drift>& drifts) const;
+    std::optional<places::Verification> verified(int node, const Keyframes& keyframes,
+                                                 const Topology& topology,
+                                                 const std::vector<Drift>& drifts) const;
 
     std::size_t memory_bytes() const { return index_.memory_bytes(); }
 
   private:
-    std::vector<double> appearance_scores(const KeyframeView& view, const std::vector<bool>& near) const;
+    std::vector<double> appearance_scores(const places::KeyframeView& view,
+                                          const std::vector<bool>& near) const;
     std::vector<double> place_scores(const Keyframes& keyframes, const std::vector<bool>& near,
                                      const std::vector<Drift>& drifts) const;
     bool fits_odometry(const Pose& expected, const Drift& drift, const Pose& node_from_newest) const;
@@ -47,7 +49,7 @@ class LoopSearch {
                            const std::vector<Drift>& drifts, const Pose& node_from_newest) const;
 
     GraphOptions options_;
-    PlaceIndex index_;
+    places::PlaceIndex index_;
     std::vector<int> place_of_;  ///< number in the index of each node
 };
 

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "graph/comparison.hpp"
 #include "graph/verification_options.hpp"
+#include "places/comparison.hpp"
 
 namespace planemap::graph {
 
@@ -55,14 +55,14 @@ std::vector<int> Redundancy::place_of(int node, const Keyframes& keyframes, cons
 bool Redundancy::is_alike(int a, int b, const Keyframes& keyframes) const {
     constexpr int kFewPoints = 20;
     constexpr double kSlack_m = 0.02;
-    const KeyframeView &view_a = keyframes[a].view, &view_b = keyframes[b].view;
+    const places::KeyframeView &view_a = keyframes[a].view, &view_b = keyframes[b].view;
     const Pose a_from_b = keyframes.between(a, b);
-    const PointAgreement points =
+    const places::PointAgreement points =
         compare_points(view_a, view_b, a_from_b, verification_options(options_), kSlack_m);
     const bool is_bare = view_a.points.size() < kFewPoints && view_b.points.size() < kFewPoints;
     if (!is_bare && points.agree < std::max<double>(kFewPoints, options_.min_alike_ratio * points.visible))
         return false;
-    const PlaneAgreement planes = compare_planes(view_a, view_b, a_from_b, kSlack_m);
+    const places::PlaneAgreement planes = compare_planes(view_a, view_b, a_from_b, kSlack_m);
     if (is_bare && planes.agree == 0) return false;
     return planes.contradict <= options_.max_contradiction * (planes.agree + planes.contradict);
 }

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "graph/comparison.hpp"
+#include "places/comparison.hpp"
 
 namespace planemap::graph {
 
@@ -55,16 +55,16 @@ const PlacedView* best_partner(std::span<const PlacedView> older, const PlacedVi
 
 enum class Likeness { kUnknown, kAlike, kUnlike };
 
-Likeness compare(const PlacedView& a, const PlacedView& b, const VerificationOptions& options) {
+Likeness compare(const PlacedView& a, const PlacedView& b, const places::VerificationOptions& options) {
     constexpr int kMinSamples = 20, kMinPoints = 60;
     constexpr double kAlikeShare = 0.08, kUnlikeShare = 0.02;
     const Pose a_from_b = a.world_from_camera.inverse(Eigen::Isometry) * b.world_from_camera;
     const double slack_m = std::max(kMinSlack, (a.drift_m + b.drift_m) / 2);
-    const PlaneAgreement planes = compare_planes(*a.view, *b.view, a_from_b, slack_m);
+    const places::PlaneAgreement planes = compare_planes(*a.view, *b.view, a_from_b, slack_m);
     const int samples = planes.agree + planes.contradict;
     if (samples >= kMinSamples && planes.contradict > options.max_contradiction * samples)
         return Likeness::kUnlike;
-    const PointAgreement points = compare_points(*a.view, *b.view, a_from_b, options, slack_m);
+    const places::PointAgreement points = compare_points(*a.view, *b.view, a_from_b, options, slack_m);
     if (points.visible < kMinPoints) return Likeness::kUnknown;
     if (points.agree > kAlikeShare * points.visible) return Likeness::kAlike;
     return points.agree < kUnlikeShare * points.visible ? Likeness::kUnlike : Likeness::kUnknown;
@@ -73,7 +73,7 @@ Likeness compare(const PlacedView& a, const PlacedView& b, const VerificationOpt
 }  // namespace
 
 Surroundings compare_surroundings(std::span<const PlacedView> older, std::span<const PlacedView> newer,
-                                  const VerificationOptions& options) {
+                                  const places::VerificationOptions& options) {
     const std::vector<PlacedView> partners = thinned(older);
     Surroundings surroundings;
     for (const PlacedView& view : thinned(newer)) {

@@ -4,14 +4,14 @@
 
 #include <span>
 
-#include "graph/keyframe_view.hpp"
 #include "graph/verification_options.hpp"
+#include "places/keyframe_view.hpp"
 
 namespace planemap::graph {
 
 /// A view and where its camera stood, if a loop closure is true.
 struct PlacedView {
-    const KeyframeView* view = nullptr;
+    const places::KeyframeView* view = nullptr;
     Pose world_from_camera = Pose::Identity();
     double drift_m = 0;  ///< bound of its error with respect to its own end of the loop closure
 };
@@ -27,6 +27,6 @@ struct Surroundings {
 /// Compares each of the newer views with the older one that shares most with it. Pairs that drift allows to
 /// be elsewhere, or that show little, count as neither.
 Surroundings compare_surroundings(std::span<const PlacedView> older, std::span<const PlacedView> newer,
-                                  const VerificationOptions& options);
+                                  const places::VerificationOptions& options);
 
 }  // namespace planemap::graph

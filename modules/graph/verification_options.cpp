@@ -3,8 +3,8 @@
 
 namespace planemap::graph {
 
-VerificationOptions verification_options(const GraphOptions& options) {
-    VerificationOptions out;
+places::VerificationOptions verification_options(const GraphOptions& options) {
+    places::VerificationOptions out;
     out.matching = {options.max_descriptor_distance, options.matching_ratio};
     out.bearing_sigma = options.bearing_sigma;
     out.min_inliers = options.min_inliers;

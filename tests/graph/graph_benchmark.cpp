@@ -7,8 +7,8 @@
 
 #include "graph/graph.hpp"
 #include "graph/optimisation.hpp"
-#include "graph/place_index.hpp"
-#include "graph/synthetic.hpp"
+#include "places/place_index.hpp"
+#include "places/synthetic.hpp"
 
 namespace planemap::graph {
 namespace {
@@ -209,7 +209,7 @@ std::vector<Descriptor> place(Random& random, const std::vector<Descriptor>& sto
 void time_index(int count) {
     Random random(2);
     const std::vector<Descriptor> stock = place(random, {Descriptor{}}, 20000);
-    PlaceIndex index;
+    places::PlaceIndex index;
     std::vector<double> add, query;
     for (int i = 0; i < count; ++i) {
         const std::vector<Descriptor> descriptors = place(random, stock, 600);

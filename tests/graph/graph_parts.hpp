@@ -4,8 +4,8 @@
 
 #include "graph/keyframes.hpp"
 #include "graph/options.hpp"
-#include "graph/synthetic.hpp"
 #include "graph/topology.hpp"
+#include "places/synthetic.hpp"
 
 namespace planemap::test {
 
@@ -28,7 +28,7 @@ struct GraphParts {
         }
         keyframes.add(
             {keyframe.id, keyframe.utime, keyframe.chain, keyframe.odom_from_camera,
-             graph::make_view(keyframe, 600)},
+             places::make_view(keyframe, 600)},
             world_from_camera, node - 1);
     }
 };

@@ -5,8 +5,8 @@
 #include <thread>
 
 #include "core/trajectory_file.hpp"
-#include "graph/synthetic.hpp"
 #include "messages/session.hpp"
+#include "places/synthetic.hpp"
 #include "shell_fixture.hpp"
 #include "temporary_folder.hpp"
 

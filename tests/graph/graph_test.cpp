@@ -8,7 +8,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "graph/synthetic.hpp"
+#include "places/synthetic.hpp"
 
 namespace planemap::graph {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "graph/synthetic.hpp"
+#include "places/synthetic.hpp"
 
 namespace planemap::graph {
 namespace {
@@ -13,27 +13,27 @@ using namespace planemap::test;
 class SurroundingsTest : public testing::Test {
   protected:
     /// Views all round a room of these landmarks.
-    std::vector<KeyframeView> look_around(const std::vector<test::Landmark>& room) {
-        std::vector<KeyframeView> views;
+    std::vector<places::KeyframeView> look_around(const std::vector<test::Landmark>& room) {
+        std::vector<places::KeyframeView> views;
         for (const Pose& pose : poses_) {
             Keyframe keyframe;
             keyframe.features = see(room, pose, random_);
-            views.push_back(make_view(keyframe, 600));
+            views.push_back(places::make_view(keyframe, 600));
         }
         return views;
     }
-    std::vector<PlacedView> placed(const std::vector<KeyframeView>& views, double drift_m = 0.1,
+    std::vector<PlacedView> placed(const std::vector<places::KeyframeView>& views, double drift_m = 0.1,
                                    const Pose& move = Pose::Identity()) const {
         std::vector<PlacedView> placed;
         for (std::size_t i = 0; i < views.size(); ++i)
             placed.push_back({&views[i], move * poses_[i], drift_m});
         return placed;
     }
-    static void give_wall(std::vector<KeyframeView>& views, double z) {
+    static void give_wall(std::vector<places::KeyframeView>& views, double z) {
         Pose box = Pose::Identity();
         box.linear() = Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()).toRotationMatrix();
         box.translation().z() = z;
-        for (KeyframeView& view : views) view.regions = {rectangle(box, 0.4 * z, 0.3 * z)};
+        for (places::KeyframeView& view : views) view.regions = {rectangle(box, 0.4 * z, 0.3 * z)};
     }
 
     Random random_{1};
@@ -84,7 +84,7 @@ TEST_F(SurroundingsTest, ViewsOfOtherPlacesSayNothing) {
     EXPECT_EQ(found.alike + found.unlike, 0);
     EXPECT_TRUE(found.fit());
     EXPECT_TRUE(compare_surroundings({}, {}, {}).fit());
-    const std::vector<KeyframeView> blind(8);
+    const std::vector<places::KeyframeView> blind(8);
     EXPECT_TRUE(compare_surroundings(placed(blind), placed(first), {}).fit());
 }
 

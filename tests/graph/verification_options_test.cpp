@@ -11,7 +11,7 @@ TEST(VerificationOptions, TakesWhatTheGraphsOptionsSay) {
     options.matching_ratio = 0.61;
     options.min_inliers = 37;
     options.min_inlier_ratio = 0.43;
-    const VerificationOptions verification = verification_options(options);
+    const places::VerificationOptions verification = verification_options(options);
     EXPECT_EQ(verification.matching.ratio, 0.61);
     EXPECT_EQ(verification.min_inliers, 37);
     EXPECT_EQ(verification.min_inlier_ratio, 0.43);
@@ -19,7 +19,7 @@ TEST(VerificationOptions, TakesWhatTheGraphsOptionsSay) {
 
 /// A default that stands in both must be the same, or tests of verification would test another product.
 TEST(VerificationOptions, ItsOwnDefaultsAreTheGraphs) {
-    const VerificationOptions own, graphs = verification_options(GraphOptions());
+    const places::VerificationOptions own, graphs = verification_options(GraphOptions());
     EXPECT_EQ(own.bearing_sigma, graphs.bearing_sigma);
     EXPECT_EQ(own.min_inliers, graphs.min_inliers);
     EXPECT_EQ(own.min_inlier_ratio, graphs.min_inlier_ratio);

@@ -3,10 +3,10 @@
 
 #include <cstdint>
 
-#include "graph/keyframe_view.hpp"
-#include "graph/verification_options.hpp"
+#include "places/keyframe_view.hpp"
+#include "places/verification_options.hpp"
 
-namespace planemap::graph {
+namespace planemap::places {
 
 /// Why a loop closure was refused, or that it was not.
 enum class Verdict {
@@ -34,4 +34,4 @@ struct Verification {
 Verification verify(const KeyframeView& a, const KeyframeView& b, const VerificationOptions& options,
                     std::uint64_t seed);
 
-}  // namespace planemap::graph
+}  // namespace planemap::places

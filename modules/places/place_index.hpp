@@ -9,7 +9,7 @@
 
 #include "core/keyframe.hpp"
 
-namespace planemap::graph {
+namespace planemap::places {
 
 /// Finds places by their looks. Descriptors are hashed by a few fixed random choices of 16 of their bits
 /// (locality-sensitive hashing); each hash value lists the places that have it. A place scores for each hash
@@ -59,4 +59,4 @@ class PlaceIndex {
     std::int32_t first_unused_ = -1;
 };
 
-}  // namespace planemap::graph
+}  // namespace planemap::places

@@ -4,10 +4,10 @@
 
 #include <vector>
 
-#include "graph/keyframe_view.hpp"
-#include "graph/verification_options.hpp"
+#include "places/keyframe_view.hpp"
+#include "places/verification_options.hpp"
 
-namespace planemap::graph {
+namespace planemap::places {
 
 constexpr double kInlierSigmas = 3.5;    ///< of two points' distance, when they are one
 constexpr double kPlaneDistance = 0.05;  ///< metres between planes that are one, as the map merges them
@@ -37,4 +37,4 @@ PointAgreement compare_points(const KeyframeView& a, const KeyframeView& b, cons
 std::vector<Match> match_at(const KeyframeView& a, const KeyframeView& b, const Pose& a_from_b,
                             const VerificationOptions& options, double slack_m = 0);
 
-}  // namespace planemap::graph
+}  // namespace planemap::places

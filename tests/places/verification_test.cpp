@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "graph/verification.hpp"
+#include "places/verification.hpp"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
 #include <limits>
 
-#include "graph/synthetic.hpp"
+#include "places/synthetic.hpp"
 
-namespace planemap::graph {
+namespace planemap::places {
 namespace {
 
 using namespace planemap::test;
@@ -139,4 +139,4 @@ TEST_F(VerificationTest, DegenerateViews) {
 }
 
 }  // namespace
-}  // namespace planemap::graph
+}  // namespace planemap::places

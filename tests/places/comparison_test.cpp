@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "graph/comparison.hpp"
+#include "places/comparison.hpp"
 
 #include <gtest/gtest.h>
 
 #include <set>
 
-#include "graph/synthetic.hpp"
+#include "places/synthetic.hpp"
 
-namespace planemap::graph {
+namespace planemap::places {
 namespace {
 
 using namespace planemap::test;
@@ -85,4 +85,4 @@ TEST_F(ComparisonTest, EmptyViewsAgreeOnNothing) {
 }
 
 }  // namespace
-}  // namespace planemap::graph
+}  // namespace planemap::places

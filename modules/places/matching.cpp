@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "graph/matching.hpp"
+#include "places/matching.hpp"
 
-namespace planemap::graph {
+namespace planemap::places {
 
 namespace {
 
@@ -45,4 +45,4 @@ std::vector<Match> match(std::span<const Descriptor> a, std::span<const Descript
     return matches;
 }
 
-}  // namespace planemap::graph
+}  // namespace planemap::places

@@ -6,7 +6,7 @@
 
 #include "core/keyframe.hpp"
 
-namespace planemap::graph {
+namespace planemap::places {
 
 /// What loop closure keeps of a keyframe. All in its camera frame.
 struct KeyframeView {
@@ -36,4 +36,4 @@ double mean_depth(const KeyframeView& view);
 /// Bytes it takes, by capacity.
 std::size_t memory_bytes(const KeyframeView& view);
 
-}  // namespace planemap::graph
+}  // namespace planemap::places

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "graph/verification.hpp"
+#include "places/verification.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -12,9 +12,9 @@
 
 #include "core/angle.hpp"
 #include "core/geometry/rigid_fit.hpp"
-#include "graph/comparison.hpp"
+#include "places/comparison.hpp"
 
-namespace planemap::graph {
+namespace planemap::places {
 
 namespace {
 
@@ -328,4 +328,4 @@ Verification verify(const KeyframeView& a, const KeyframeView& b, const Verifica
     return result;
 }
 
-}  // namespace planemap::graph
+}  // namespace planemap::places

@@ -8,7 +8,7 @@
 
 #include "core/keyframe.hpp"
 
-namespace planemap::graph {
+namespace planemap::places {
 
 /// Number of bits in which two descriptors differ, 0 to 256.
 inline int hamming_distance(const Descriptor& a, const Descriptor& b) {
@@ -34,4 +34,4 @@ struct MatchingOptions {
 std::vector<Match> match(std::span<const Descriptor> a, std::span<const Descriptor> b,
                          const MatchingOptions& options);
 
-}  // namespace planemap::graph
+}  // namespace planemap::places

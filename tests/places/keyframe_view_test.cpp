@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "graph/keyframe_view.hpp"
+#include "places/keyframe_view.hpp"
 
 #include <gtest/gtest.h>
 
-#include "graph/synthetic.hpp"
+#include "places/synthetic.hpp"
 
-namespace planemap::graph {
+namespace planemap::places {
 namespace {
 
 using namespace planemap::test;
@@ -61,4 +61,4 @@ TEST(KeyframeView, OverlapIsWholeForTheSamePoseAndNoneForTheOppositeOne) {
 }
 
 }  // namespace
-}  // namespace planemap::graph
+}  // namespace planemap::places

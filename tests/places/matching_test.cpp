@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "graph/matching.hpp"
+#include "places/matching.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "graph/synthetic.hpp"
+#include "places/synthetic.hpp"
 
-namespace planemap::graph {
+namespace planemap::places {
 namespace {
 
 using namespace planemap::test;
@@ -57,4 +57,4 @@ TEST(Matching, AmbiguousDescriptorsDoNotMatch) {
 }
 
 }  // namespace
-}  // namespace planemap::graph
+}  // namespace planemap::places

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "graph/place_index.hpp"
+#include "places/place_index.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <random>
 
-namespace planemap::graph {
+namespace planemap::places {
 
 PlaceIndex::PlaceIndex() {
     std::mt19937_64 engine(20160924);
@@ -120,4 +120,4 @@ std::vector<double> PlaceIndex::scores(std::span<const Descriptor> descriptors) 
     return scores;
 }
 
-}  // namespace planemap::graph
+}  // namespace planemap::places

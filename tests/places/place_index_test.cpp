@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "graph/place_index.hpp"
+#include "places/place_index.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "graph/synthetic.hpp"
+#include "places/synthetic.hpp"
 
-namespace planemap::graph {
+namespace planemap::places {
 namespace {
 
 using namespace planemap::test;
@@ -100,4 +100,4 @@ TEST(PlaceIndex, EmptyIndexAndEmptyViews) {
 }
 
 }  // namespace
-}  // namespace planemap::graph
+}  // namespace planemap::places

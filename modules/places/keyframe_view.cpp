@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "graph/keyframe_view.hpp"
+#include "places/keyframe_view.hpp"
 
-namespace planemap::graph {
+namespace planemap::places {
 
 KeyframeView make_view(const Keyframe& keyframe, int max_features) {
     std::vector<const Feature*> sound;
@@ -55,4 +55,4 @@ std::size_t memory_bytes(const KeyframeView& view) {
     return bytes;
 }
 
-}  // namespace planemap::graph
+}  // namespace planemap::places

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "graph/comparison.hpp"
+#include "places/comparison.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-namespace planemap::graph {
+namespace planemap::places {
 
 namespace {
 
@@ -108,4 +108,4 @@ std::vector<Match> match_at(const KeyframeView& a, const KeyframeView& b, const 
     return matches;
 }
 
-}  // namespace planemap::graph
+}  // namespace planemap::places
