@@ -8,6 +8,7 @@ namespace {
 
 constexpr double kUsual = 0.01;  // metres and radians by which a prediction is off at any rate
 constexpr double kReach = 0.3;   // metres and radians that a camera may always have moved
+constexpr double kPause = 1.5;   // seconds without a pose after which it may be anywhere
 
 }  // namespace
 
@@ -48,6 +49,10 @@ Guess CameraMotion::guess(std::int64_t utime, const Pose& odom_from_keyframe, bo
     guess.predicted_from_keyframe = guess.camera_from_keyframe;
     if (knows_velocity(utime)) guess.velocity_gain = filter_.velocity_gain(elapsed);
     return guess;
+}
+
+bool CameraMotion::is_bounded(std::int64_t utime) const {
+    return seconds_since_pose(utime) <= kPause;
 }
 
 bool CameraMotion::is_plausible(const Pose& odom_from_camera, std::int64_t utime) const {

@@ -26,6 +26,9 @@ class CameraMotion {
     Guess predict(std::int64_t utime, const Pose& odom_from_keyframe) const;
     /// Where it is if the camera stands where it was last.
     Guess stand_still(std::int64_t utime, const Pose& odom_from_keyframe) const;
+    /// Whether the last pose is so recent that it says where the camera can be; after a pause it may be
+    /// anywhere.
+    bool is_bounded(std::int64_t utime) const;
     /// True when the camera can have come there since the last pose.
     bool is_plausible(const Pose& odom_from_camera, std::int64_t utime) const;
 

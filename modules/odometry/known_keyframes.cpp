@@ -2,23 +2,15 @@
 #include "odometry/known_keyframes.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <cstdlib>
 #include <limits>
-#include <numeric>
-#include <opencv2/imgproc.hpp>
-
-#include "odometry/features.hpp"
+#include <utility>
 
 namespace planemap::odometry {
 namespace {
 
-constexpr int kThumbnailWidth = 40, kThumbnailHeight = 30;
 constexpr std::size_t kNewest = 10;  // never dropped
-
-double likeness(const std::vector<float>& a, const std::vector<float>& b) {
-    if (a.size() != b.size()) return -1;
-    return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
-}
+constexpr int kAround = 20;          // keyframes before and after one
 
 /// Metres, a radian counted as one.
 double pose_distance(const Pose& a, const Pose& b) {
@@ -27,23 +19,25 @@ double pose_distance(const Pose& a, const Pose& b) {
 
 }  // namespace
 
-std::vector<float> make_thumbnail(const GrayImage& gray) {
-    cv::Mat small, blurred;
-    cv::resize(as_mat(gray), small, {kThumbnailWidth, kThumbnailHeight}, 0, 0, cv::INTER_AREA);
-    cv::GaussianBlur(small, blurred, {5, 5}, 1.2);
-    std::vector<float> values(blurred.begin<unsigned char>(), blurred.end<unsigned char>());
-    const float mean =
-        std::accumulate(values.begin(), values.end(), 0.0f) / static_cast<float>(values.size());
-    for (float& value : values) value -= mean;
-    const auto norm = static_cast<float>(std::sqrt(likeness(values, values)));
-    if (norm > 0)
-        for (float& value : values) value /= norm;
-    return values;
-}
-
-void KnownKeyframes::add(KnownKeyframe keyframe) {
+void KnownKeyframes::add(int id, int previous_id, const Pose& odom_from_keyframe, places::KeyframeView view) {
+    KnownKeyframe keyframe;
+    keyframe.id = id;
+    if (const KnownKeyframe* previous = find(previous_id))
+        keyframe.part = previous->part;
+    else if (previous_id >= 0 && !keyframes_.empty())
+        keyframe.part = keyframes_.back().part;  // what it goes on from was dropped
+    else
+        keyframe.part = parts_++;
+    keyframe.odom_from_keyframe = odom_from_keyframe;
+    keyframe.place = index_.add(view.descriptors);
+    keyframe.view = std::move(view);
     keyframes_.push_back(std::move(keyframe));
     if (static_cast<int>(keyframes_.size()) > capacity_) drop_one();
+}
+
+void KnownKeyframes::clear() {
+    keyframes_.clear();
+    index_ = places::PlaceIndex();
 }
 
 void KnownKeyframes::drop_one() {
@@ -51,13 +45,16 @@ void KnownKeyframes::drop_one() {
     double nearest = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i + kNewest < keyframes_.size(); ++i)
         for (std::size_t j = i + 1; j < keyframes_.size(); ++j) {
+            if (keyframes_[i].part != keyframes_[j].part) continue;
             const double d =
                 pose_distance(keyframes_[i].odom_from_keyframe, keyframes_[j].odom_from_keyframe);
             if (d >= nearest) continue;
             nearest = d;
             oldest_of_pair = i;
         }
-    keyframes_.erase(keyframes_.begin() + static_cast<std::ptrdiff_t>(oldest_of_pair));
+    const auto dropped = keyframes_.begin() + static_cast<std::ptrdiff_t>(oldest_of_pair);
+    index_.remove(dropped->place, dropped->view.descriptors);
+    keyframes_.erase(dropped);
 }
 
 const KnownKeyframe* KnownKeyframes::find(int id) const {
@@ -66,21 +63,27 @@ const KnownKeyframe* KnownKeyframes::find(int id) const {
     return found == keyframes_.end() ? nullptr : &*found;
 }
 
-std::vector<const KnownKeyframe*> KnownKeyframes::candidates(const GrayImage& gray, int count) const {
-    if (keyframes_.empty() || count < 1) return {};
-    const std::vector<float> thumbnail = make_thumbnail(gray);
-    std::vector<std::pair<double, const KnownKeyframe*>> ranked;
-    ranked.reserve(keyframes_.size());
-    for (const KnownKeyframe& keyframe : keyframes_)
-        ranked.emplace_back(&keyframe == &keyframes_.back() ? 2.0 : likeness(thumbnail, keyframe.thumbnail),
-                            &keyframe);
+std::vector<KnownKeyframes::Candidate> KnownKeyframes::candidates(
+    std::span<const Descriptor> descriptors) const {
+    const std::vector<double> scores = index_.scores(descriptors);
+    std::vector<Candidate> ranked;
+    for (const KnownKeyframe& keyframe : keyframes_) {
+        const double score = scores[static_cast<std::size_t>(keyframe.place)];
+        if (score > 0 || &keyframe == &keyframes_.back()) ranked.push_back({&keyframe, score});
+    }
     std::reverse(ranked.begin(), ranked.end());
-    std::stable_sort(ranked.begin(), ranked.end(),
-                     [](const auto& a, const auto& b) { return a.first > b.first; });
-    std::vector<const KnownKeyframe*> best;
-    for (const auto& [like, keyframe] : ranked)
-        if (static_cast<int>(best.size()) < count) best.push_back(keyframe);
-    return best;
+    if (ranked.size() > 1)
+        std::stable_sort(ranked.begin() + 1, ranked.end(),
+                         [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
+    return ranked;
+}
+
+std::vector<const KnownKeyframe*> KnownKeyframes::around(const KnownKeyframe& keyframe) const {
+    std::vector<const KnownKeyframe*> around;
+    for (const KnownKeyframe& other : keyframes_)
+        if (other.part == keyframe.part && std::abs(other.id - keyframe.id) <= kAround)
+            around.push_back(&other);
+    return around;
 }
 
 }  // namespace planemap::odometry

@@ -46,8 +46,8 @@ class Odometry::State {
     OdometryResult follow(PreparedFrame& frame, Located& located);
     std::optional<Keyframe> begin(PreparedFrame& frame);
     std::optional<Keyframe> change_keyframe(PreparedFrame& frame, const Located& located);
-    Keyframe add_keyframe(PreparedFrame& frame, LocalKeyframe local, const Pose& odom_from_camera,
-                          const FrameMotion& motion, const Located* located);
+    Keyframe add_keyframe(PreparedFrame& frame, LocalKeyframe local, const Located* located,
+                          const FrameMotion& motion);
     OdometryEstimate estimate_at(const Keyframe& keyframe) const;
 
     OdometryOptions options_;
@@ -165,7 +165,6 @@ OdometryResult Odometry::State::find_again(PreparedFrame& frame) {
     OdometryResult result;
     std::optional<Located> located;
     if (frame.gray) located = relocaliser_.locate(frame, motion_, keyframes_);
-    if (located && !relocaliser_.agrees(*located, frame.regions)) located.reset();
     if (!located) {
         motion_.lose();
         resumed_ = motion_.lost_frames() < options_.max_lost_frames;
@@ -178,7 +177,7 @@ OdometryResult Odometry::State::find_again(PreparedFrame& frame) {
     LocalKeyframe local = make_local_keyframe(options_, frame, motion);
     if (!can_be_tracked_against(local, options_.min_inliers)) return result;
     resumed_ = false;
-    Keyframe keyframe = add_keyframe(frame, std::move(local), located->odom_from_camera(), motion, &*located);
+    Keyframe keyframe = add_keyframe(frame, std::move(local), &*located, motion);
     result.estimate = estimate_at(keyframe);
     result.estimate.features = located->track.tried;
     result.estimate.inliers = located->track.inliers;
@@ -251,7 +250,7 @@ std::optional<Keyframe> Odometry::State::begin(PreparedFrame& frame) {
     LocalKeyframe local = make_local_keyframe(options_, frame, motion);
     if (!can_be_tracked_against(local, 2 * options_.min_inliers)) return std::nullopt;
     keyframes_.clear();
-    return add_keyframe(frame, std::move(local), motion_.odom_from_camera(), motion, nullptr);
+    return add_keyframe(frame, std::move(local), nullptr, motion);
 }
 
 /// Goes over to another keyframe that is known, else to a new one of this frame, where that is of use.
@@ -271,24 +270,24 @@ std::optional<Keyframe> Odometry::State::change_keyframe(PreparedFrame& frame, c
         method_->go_on_from(frame, track);
         return std::nullopt;
     }
-    return add_keyframe(frame, std::move(local), located.odom_from_camera(), motion, &located);
+    return add_keyframe(frame, std::move(local), &located, motion);
 }
 
-/// Its edge leads from the keyframe that the frame was located against; without one (nullptr) a chain begins.
-Keyframe Odometry::State::add_keyframe(PreparedFrame& frame, LocalKeyframe local,
-                                       const Pose& odom_from_camera, const FrameMotion& motion,
-                                       const Located* located) {
+/// With an edge from where the frame was located; nullptr: without one, at the last pose, and a chain begins.
+Keyframe Odometry::State::add_keyframe(PreparedFrame& frame, LocalKeyframe local, const Located* located,
+                                       const FrameMotion& motion) {
     Keyframe keyframe = make_keyframe(options_, frame, motion);
     keyframe.id = local.id = next_id_++;
     local.utime = frame.utime;
-    keyframe.odom_from_camera = local.odom_from_keyframe = odom_from_camera;
-    if (located != nullptr) {
+    keyframe.odom_from_camera = local.odom_from_keyframe =
+        located ? located->odom_from_camera() : motion_.odom_from_camera();
+    if (located) {
         keyframe.previous_id = located->keyframe_id;
         keyframe.previous_from_camera = located->keyframe_from_camera();
         keyframe.covariance = located->covariance();
     }
     keyframe.chain = chains_.add(keyframe.id, keyframe.previous_id);
-    if (frame.gray) relocaliser_.add(keyframe, frame);
+    if (frame.gray) relocaliser_.add(keyframe);
     method_->go_on_from(frame, local);
     keyframes_.add(std::move(local));
     return keyframe;

@@ -14,7 +14,10 @@ std::optional<Located> PaperMethod::locate(const PreparedFrame& frame, const Sur
     if (static_cast<int>(features.size()) < options_.min_inliers) return std::nullopt;
     std::optional<Located> located;
     const LocalKeyframe& keyframe = known.keyframes.current();
-    if (std::optional<Track> found = track(features, frame, known))
+    // After a pause what lies ahead may only look like what was there: it is not followed, but verified.
+    std::optional<Track> found;
+    if (known.motion.is_bounded(frame.utime)) found = track(features, frame, known);
+    if (found)
         located = Located{std::move(*found), keyframe.id, keyframe.odom_from_keyframe};
     else
         located = known.relocaliser.locate(frame, known.motion, known.keyframes);

@@ -7,7 +7,6 @@ namespace planemap::odometry {
 namespace {
 
 constexpr double kStillPredicted = 0.3;  // seconds without a pose for which the prediction means something
-constexpr double kLongestGap = 1.5;      // seconds without a pose after which depth alone is not followed
 constexpr int kBlindFrames = 3;          // without features, after which they are not looked for any harder
 constexpr int kBlindRetry = 8;           // every so many blind frames are looked at as others
 constexpr double kSureShare = 0.85;      // of the visible surface that must fit where nothing was predicted
@@ -19,6 +18,11 @@ bool PlanarMethod::is_blind() const {
 }
 
 std::optional<Located> PlanarMethod::locate(const PreparedFrame& frame, const Surroundings& known) {
+    // After a pause what lies ahead may only look like what was there: it is not followed, but verified.
+    if (!known.motion.is_bounded(frame.utime)) {
+        if (!frame.gray) return std::nullopt;
+        return known.relocaliser.locate(frame, known.motion, known.keyframes);
+    }
     const LocalKeyframe& keyframe = known.keyframes.current();
     Guess guess = known.motion.predict(frame.utime, keyframe.odom_from_keyframe);
     std::optional<Track> track;
@@ -51,7 +55,6 @@ std::optional<Track> PlanarMethod::second_chances(const PreparedFrame& frame, co
 std::optional<Track> PlanarMethod::track_geometry(const PreparedFrame& frame, const Surroundings& known,
                                                   const Guess& guess) const {
     const double elapsed = known.motion.seconds_since_pose(frame.utime);
-    if (elapsed > kLongestGap) return std::nullopt;
     const bool fresh = elapsed < kStillPredicted;
     const LocalKeyframe& keyframe = known.keyframes.current();
     const Guess still = known.motion.stand_still(frame.utime, keyframe.odom_from_keyframe);

@@ -9,33 +9,55 @@
 #include "odometry/local_keyframes.hpp"
 #include "odometry/options.hpp"
 #include "odometry/tracker.hpp"
+#include "places/verification.hpp"
 
 namespace planemap::odometry {
 
-/// Finds a lost camera again by what earlier keyframes saw.
+/// Finds a lost camera again by what earlier keyframes saw. A place is known again when the view stands the
+/// verification of loop closures against a keyframe, what was seen around that keyframe does not speak
+/// against it, and no other remembered keyframe that the camera may be at explains the view as well: where
+/// two places look alike, neither is taken.
 class Relocaliser {
   public:
     explicit Relocaliser(const OdometryOptions& options);
 
-    /// Remembers a keyframe. Precondition: the frame has colour.
-    void add(const Keyframe& keyframe, const PreparedFrame& frame);
-    /// The same of one whose frame is gone.
+    /// Remembers a keyframe, edge included.
     void add(const Keyframe& keyframe);
-    /// Whether planes bear out that a frame is where it was located, against a keyframe whose frame is gone:
-    /// of the three largest regions of the frame one at least lies, by orientation and distance, on a plane
-    /// that the keyframe saw, and not more contradict than agree. Where depth shows no plane, nothing bears
-    /// it out.
-    bool agrees(const Located& located, std::span<const PlanarRegion> regions) const;
     void clear() { known_.clear(); }
 
-    /// The frame's descriptors against remembered keyframes, refined by flow where the keyframe is still a
-    /// local one. Nothing when none fits, or the camera cannot have come there. Precondition: the frame has
-    /// colour.
+    /// Where the frame is, by at most relocalisation_tries keyframes, the likest first; at most four times as
+    /// many more verifications ask whether it may be elsewhere; refined by flow where the keyframe is still a
+    /// local one. Nothing when none fits, several do, or the camera cannot have come there. Precondition: the
+    /// frame has colour.
     std::optional<Located> locate(const PreparedFrame& frame, const CameraMotion& motion,
                                   const LocalKeyframes& local) const;
 
   private:
+    /// A frame that is asked about.
+    struct Query {
+        const PreparedFrame& frame;
+        const CameraMotion& motion;
+        places::KeyframeView view;
+    };
+    /// One answer.
+    struct Explanation {
+        const KnownKeyframe* keyframe = nullptr;
+        places::Verification verification;
+        double score = 0;
+
+        Pose odom_from_camera() const { return keyframe->odom_from_keyframe * verification.a_from_b; }
+    };
+
+    std::optional<Explanation> explain(const Query& query, const KnownKeyframes::Candidate& candidate,
+                                       const places::VerificationOptions& options) const;
+    bool is_contradicted(const Explanation& explanation, const places::KeyframeView& view) const;
+    bool has_rival(const Query& query, const Explanation& found,
+                   std::span<const KnownKeyframes::Candidate> candidates) const;
+    bool has_twin(const Query& query, const Explanation& found) const;
+    Located located(const Query& query, const Explanation& found, const LocalKeyframes& local) const;
+
     OdometryOptions options_;
+    places::VerificationOptions verification_;
     KnownKeyframes known_;
 };
 

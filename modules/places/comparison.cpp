@@ -40,23 +40,80 @@ double ray_cast(const KeyframeView& view, const Eigen::Vector3d& p) {
     return nearest;
 }
 
+/// What a view says of a point of a surface that another one saw.
+enum class Witness {
+    kNothing,  ///< does not look there
+    kAgrees,   ///< has a surface there
+    kThrough,  ///< sees one clearly behind it
+    kBeside,   ///< neither for certain
+};
+
+/// What `a` says of a point of b's surface at p, a's frame.
+Witness look_at(const KeyframeView& a, const KeyframeView& b, const Eigen::Vector3d& p, double slack_m) {
+    if (!a.sees(p)) return Witness::kNothing;
+    const double behind = (ray_cast(a, p) - 1) * p.z();
+    if (!std::isfinite(behind)) return Witness::kNothing;
+    const double margin = kPlaneDistance + slack_m + 3 * worst_sigma(a, b, p.z() + std::max(0.0, behind));
+    if (behind > 2 * margin) return Witness::kThrough;
+    return std::abs(behind) < margin ? Witness::kAgrees : Witness::kBeside;
+}
+
 /// Where samples of b's regions lie with respect to the surfaces that a saw.
 PlaneAgreement compare_one_way(const KeyframeView& a, const KeyframeView& b, const Pose& a_from_b,
                                double slack_m) {
     PlaneAgreement agreement;
     for (const PlanarRegion& region : b.regions) {
         for (const Eigen::Vector3d& sample : samples_of(region)) {
-            const Eigen::Vector3d p = a_from_b * sample;
-            if (!a.sees(p)) continue;
-            const double behind = (ray_cast(a, p) - 1) * p.z();
-            if (!std::isfinite(behind)) continue;
-            const double margin =
-                kPlaneDistance + slack_m + 3 * worst_sigma(a, b, p.z() + std::max(0.0, behind));
-            if (behind > 2 * margin) ++agreement.contradict;
-            if (std::abs(behind) < margin) ++agreement.agree;
+            const Witness witness = look_at(a, b, a_from_b * sample, slack_m);
+            agreement.agree += witness == Witness::kAgrees;
+            agreement.contradict += witness == Witness::kThrough;
         }
     }
     return agreement;
+}
+
+/// Surface in readings: what was confirmed, and what was seen through.
+struct Testimony {
+    double agrees = 0, through = 0;
+    double share_through() const { return through > 0 ? through / (agrees + through) : 0; }
+};
+
+/// What all others say of a view's regions: what one of them has a surface at is there for all.
+Testimony seen_by_others(const KeyframeView& view, std::span<const PlacedView> others, double slack_m) {
+    Testimony all;
+    for (const PlanarRegion& region : view.regions) {
+        const std::vector<Eigen::Vector3d> samples = samples_of(region);
+        const double readings = region.moments.count / std::max(1.0, static_cast<double>(samples.size()));
+        for (const Eigen::Vector3d& sample : samples) {
+            bool agrees = false, through = false;
+            for (const PlacedView& other : others) {
+                const Witness witness = look_at(*other.view, view, other.other_from_view * sample, slack_m);
+                agrees = agrees || witness == Witness::kAgrees;
+                through = through || witness == Witness::kThrough;
+            }
+            all.agrees += agrees ? readings : 0;
+            all.through += through && !agrees ? readings : 0;
+        }
+    }
+    return all;
+}
+
+/// What a view says of all others' regions.
+Testimony seen_of_others(const KeyframeView& view, std::span<const PlacedView> others, double slack_m) {
+    Testimony all;
+    for (const PlacedView& other : others) {
+        const Pose view_from_other = other.other_from_view.inverse(Eigen::Isometry);
+        for (const PlanarRegion& region : other.view->regions) {
+            const std::vector<Eigen::Vector3d> samples = samples_of(region);
+            const double readings = region.moments.count / std::max(1.0, static_cast<double>(samples.size()));
+            for (const Eigen::Vector3d& sample : samples) {
+                const Witness witness = look_at(view, *other.view, view_from_other * sample, slack_m);
+                all.agrees += witness == Witness::kAgrees ? readings : 0;
+                all.through += witness == Witness::kThrough ? readings : 0;
+            }
+        }
+    }
+    return all;
 }
 
 }  // namespace
@@ -70,6 +127,11 @@ PlaneAgreement compare_planes(const KeyframeView& a, const KeyframeView& b, cons
     const PlaneAgreement of_b = compare_one_way(a, b, a_from_b, slack_m);
     const PlaneAgreement of_a = compare_one_way(b, a, a_from_b.inverse(Eigen::Isometry), slack_m);
     return {of_a.agree + of_b.agree, of_a.contradict + of_b.contradict};
+}
+
+double share_seen_through(const KeyframeView& view, std::span<const PlacedView> others, double slack_m) {
+    return std::max(seen_by_others(view, others, slack_m).share_through(),
+                    seen_of_others(view, others, slack_m).share_through());
 }
 
 PointAgreement compare_points(const KeyframeView& a, const KeyframeView& b, const Pose& a_from_b,

@@ -2,6 +2,7 @@
 // Whether two views show the same when one camera stands at a given pose in the frame of the other.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "places/keyframe_view.hpp"
@@ -23,6 +24,17 @@ struct PlaneAgreement {
 };
 PlaneAgreement compare_planes(const KeyframeView& a, const KeyframeView& b, const Pose& a_from_b,
                               double slack_m = 0);
+
+/// A view beside another one.
+struct PlacedView {
+    const KeyframeView* view = nullptr;
+    Pose other_from_view = Pose::Identity();  ///< the other: this view; the view: the one that is asked about
+};
+
+/// How much speaks against a view among others of one place: of its regions, the share of readings that one
+/// of the others saw through and none has a surface at; or of the others' regions, the share that it saw
+/// through itself, whichever is more. 0 where they look at nothing together.
+double share_seen_through(const KeyframeView& view, std::span<const PlacedView> others, double slack_m);
 
 /// Of the points of b that a should see, how many lie within slack_m and noise of one of a with a like
 /// descriptor.

@@ -33,6 +33,11 @@ double overlap(const KeyframeView& a, const KeyframeView& b, const Pose& a_from_
     return seen / static_cast<double>(b.points.size());
 }
 
+bool looks_at_the_same(const KeyframeView& a, const KeyframeView& b, const Pose& a_from_b) {
+    constexpr double kFarthest = 1.0, kShare = 0.3;
+    return a_from_b.translation().norm() < kFarthest && overlap(a, b, a_from_b) > kShare;
+}
+
 double mean_depth(const KeyframeView& view) {
     double sum = 0, count = 0;
     for (const Eigen::Vector3d& p : view.points) sum += p.z();

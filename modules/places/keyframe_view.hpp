@@ -30,6 +30,10 @@ KeyframeView make_view(const Keyframe& keyframe, int max_features);
 /// Share of the points of b that a would see if b's camera stood at a_from_b; 0 without points.
 double overlap(const KeyframeView& a, const KeyframeView& b, const Pose& a_from_b);
 
+/// Whether a's camera looks at what b's shows, from a like place, if b's stands at a_from_b: within a metre
+/// of it, and with a third of b's points in view. From farther away it may look at what hides them.
+bool looks_at_the_same(const KeyframeView& a, const KeyframeView& b, const Pose& a_from_b);
+
 /// Depth of what it shows on average: of its points or, without them, of its regions; 0 for an empty view.
 double mean_depth(const KeyframeView& view);
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "places/matching.hpp"
 
+#include <algorithm>
+#include <utility>
+
 namespace planemap::places {
 
 namespace {
@@ -41,6 +44,23 @@ std::vector<Match> match(std::span<const Descriptor> a, std::span<const Descript
         const Nearest& back = of_b[static_cast<std::size_t>(of_a[i].index)];
         if (back.index == static_cast<int>(i) && back.is_clear(options))
             matches.push_back({static_cast<int>(i), of_a[i].index});
+    }
+    return matches;
+}
+
+std::vector<Match> match_all(std::span<const Descriptor> a, std::span<const Descriptor> b, int max_distance,
+                             int most) {
+    std::vector<Match> matches;
+    std::vector<std::pair<int, int>> near;  // distance, index in a
+    for (std::size_t j = 0; j < b.size(); ++j) {
+        near.clear();
+        for (std::size_t i = 0; i < a.size(); ++i) {
+            const int d = hamming_distance(a[i], b[j]);
+            if (d <= max_distance) near.emplace_back(d, static_cast<int>(i));
+        }
+        std::sort(near.begin(), near.end());
+        if (static_cast<int>(near.size()) > most) near.resize(static_cast<std::size_t>(most));
+        for (const auto& [d, i] : near) matches.push_back({i, static_cast<int>(j)});
     }
     return matches;
 }

@@ -34,4 +34,9 @@ struct MatchingOptions {
 std::vector<Match> match(std::span<const Descriptor> a, std::span<const Descriptor> b,
                          const MatchingOptions& options);
 
+/// All pairs within max_distance, of each descriptor of b its `most` nearest ones: what comes again in a view
+/// has like descriptors, of which match() takes none or one. Ascending `second`.
+std::vector<Match> match_all(std::span<const Descriptor> a, std::span<const Descriptor> b, int max_distance,
+                             int most);
+
 }  // namespace planemap::places

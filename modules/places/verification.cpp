@@ -20,6 +20,11 @@ namespace {
 
 constexpr double kPlaneAngle = radians(10);  // as the map merges planes (paper section 2.3)
 
+constexpr int kMostLike = 8;         // features that one is compared with, where many are alike
+constexpr int kLeastRival = 12;      // points that agree by chance are fewer
+constexpr double kRivalShare = 0.5;  // of the points, within one pair of views: as good an explanation
+constexpr double kWeakRival = 0.2;   // and between pairs, which see a place from better and from worse
+
 /// One point seen by both.
 struct PointPair {
     Eigen::Vector3d p_a, p_b;
@@ -286,7 +291,72 @@ double visible_ratio(const KeyframeView& a, const KeyframeView& b, const Pose& a
     return inliers / std::max({in_a, in_b, 1.0});
 }
 
+/// How many points of b have a partner among the pairs under a pose.
+int explained(const std::vector<Match>& matches, const std::vector<PointPair>& pairs, const Pose& a_from_b) {
+    const Eigen::Matrix3d r = a_from_b.linear();
+    const Eigen::Vector3d t = a_from_b.translation();
+    int count = 0, last = -1;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        const PointPair& pair = pairs[i];
+        if (matches[i].second == last) continue;
+        if ((pair.p_a - r * pair.p_b - t).squaredNorm() >= kInlierSigmas * kInlierSigmas * pair.variance)
+            continue;
+        last = matches[i].second;
+        ++count;
+    }
+    return count;
+}
+
+/// Points of b among matches: no pose explains more.
+int explained_at_most(const std::vector<Match>& matches) {
+    int count = 0, last = -1;
+    for (const Match& match : matches) count += std::exchange(last, match.second) != match.second;
+    return count;
+}
+
+/// Whether what two views share fits another motion about as well. Asked of all pairs of like features, since
+/// of a pattern that comes again the nearest descriptor is any.
+bool is_ambiguous(const KeyframeView& a, const KeyframeView& b, const Pose& a_from_b,
+                  const VerificationOptions& options, std::uint64_t seed) {
+    std::vector<Match> matches =
+        match_all(a.descriptors, b.descriptors, options.matching.max_distance, kMostLike);
+    std::vector<PointPair> pairs = make_pairs(a, b, matches, options);
+    const int needed =
+        std::max(kLeastRival, static_cast<int>(kRivalShare * explained(matches, pairs, a_from_b)));
+    std::vector<Match> other_matches;
+    std::vector<PointPair> others;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        if ((pairs[i].p_a - a_from_b * pairs[i].p_b).norm() < kApart_m / 2) continue;
+        other_matches.push_back(matches[i]);
+        others.push_back(pairs[i]);
+    }
+    if (explained_at_most(other_matches) < needed) return false;
+    const Consensus rival = ransac(a, b, others, options, seed);
+    if (rival.inliers < needed || !are_apart(rival.a_from_b, a_from_b)) return false;
+    if (explained(other_matches, others, rival.a_from_b) < needed) return false;
+    const PlaneAgreement planes = compare_planes(a, b, rival.a_from_b);
+    return planes.contradict <= options.max_contradiction * (planes.agree + planes.contradict);
+}
+
 }  // namespace
+
+bool are_apart(const Pose& a, const Pose& b) {
+    return (a.translation() - b.translation()).norm() > kApart_m ||
+           rotation_angle(a.inverse(Eigen::Isometry) * b) > kApart_rad;
+}
+
+VerificationOptions rival_options(const VerificationOptions& options, const Verification& found) {
+    VerificationOptions rival = options;
+    rival.min_inliers =
+        std::min(options.min_inliers, std::max(kLeastRival, static_cast<int>(kWeakRival * found.inliers)));
+    rival.min_inlier_ratio = 0.5 * options.min_inlier_ratio;
+    rival.min_visible_ratio = 0.5 * options.min_visible_ratio;
+    rival.min_cells = std::min(2, options.min_cells);
+    rival.max_sigma_m = 3 * options.max_sigma_m;
+    rival.max_sigma_rad = 3 * options.max_sigma_rad;
+    rival.must_be_unique = false;
+    return rival;
+}
 
 Verification verify(const KeyframeView& a, const KeyframeView& b, const VerificationOptions& options,
                     std::uint64_t seed) {
@@ -324,6 +394,8 @@ Verification verify(const KeyframeView& a, const KeyframeView& b, const Verifica
     result.verdict = Verdict::kContradiction;
     const PlaneAgreement planes = compare_planes(a, b, result.a_from_b);
     if (planes.contradict > options.max_contradiction * (planes.agree + planes.contradict)) return result;
+    result.verdict = Verdict::kAmbiguous;
+    if (options.must_be_unique && is_ambiguous(a, b, result.a_from_b, options, seed)) return result;
     result.verdict = Verdict::kAccepted;
     return result;
 }

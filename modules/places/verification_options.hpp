@@ -16,6 +16,7 @@ struct VerificationOptions {
     int min_cells = 5;  ///< of a 4 by 4 grid over either view, how many the inliers must fall into
     double max_sigma_m = 0.05, max_sigma_rad = 0.03;  ///< of the pose in its worst direction
     double max_contradiction = 0.25;  ///< share of plane samples that the other view saw through
+    bool must_be_unique = true;       ///< no other pose may explain the two views about as well
 };
 
 }  // namespace planemap::places

@@ -73,6 +73,14 @@ TEST_F(CameraMotionTest, ALostCameraIsLookedForWhereItWas) {
     EXPECT_EQ(motion_.velocity().norm(), 0);
 }
 
+TEST_F(CameraMotionTest, AfterAPauseItMayBeAnywhere) {
+    walk(10);
+    EXPECT_TRUE(motion_.is_bounded(11 * kPeriod));
+    EXPECT_TRUE(motion_.is_bounded(9 * kPeriod + 1400000));
+    EXPECT_FALSE(motion_.is_bounded(9 * kPeriod + 1600000));
+    EXPECT_FALSE(motion_.is_bounded(9 * kPeriod + 180000000));
+}
+
 TEST_F(CameraMotionTest, PosesAreTakenAsMeasuredIfAsked) {
     walk(10, false);
     EXPECT_NEAR(motion_.odom_from_camera().translation().x(), 0.09, 1e-12);

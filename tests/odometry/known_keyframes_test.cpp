@@ -4,98 +4,130 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <set>
+
+#include "core/random_values.hpp"
 
 namespace planemap::odometry {
 namespace {
 
-/// Waves of one direction and length; others for other numbers.
-GrayImage pattern(int number, double contrast = 60, double light = 120) {
-    GrayImage image(160, 120);
-    for (int v = 0; v < 120; ++v)
-        for (int u = 0; u < 160; ++u)
-            image(u, v) = static_cast<std::uint8_t>(
-                light + contrast * std::sin(0.05 * number * u + 0.3 * std::cos(number) * v));
-    return image;
-}
-
-KnownKeyframe keyframe(int id, double x, int number = 1) {
-    KnownKeyframe known;
-    known.id = id;
-    known.odom_from_keyframe.translation().x() = x;
-    known.thumbnail = make_thumbnail(pattern(number));
-    return known;
-}
-
-std::vector<int> ids(const std::vector<const KnownKeyframe*>& keyframes) {
-    std::vector<int> ids;
-    for (const KnownKeyframe* known : keyframes) ids.push_back(known->id);
-    return ids;
-}
-
-TEST(ThumbnailTest, LightAndContrastDoNotMatter) {
-    const std::vector<float> a = make_thumbnail(pattern(2)), b = make_thumbnail(pattern(2, 30, 90));
-    ASSERT_EQ(a.size(), b.size());
-    double norm = 0, likeness = 0;
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        norm += static_cast<double>(a[i] * a[i]);
-        likeness += static_cast<double>(a[i] * b[i]);
+/// Views of places: another number, other descriptors; a likeness shares some of them.
+class KnownKeyframesTest : public testing::Test {
+  protected:
+    static std::vector<Descriptor> look(int number, int features = 40) {
+        test::Random random(static_cast<unsigned>(1 + number));
+        std::vector<Descriptor> descriptors(static_cast<std::size_t>(features));
+        for (Descriptor& descriptor : descriptors)
+            for (auto& byte : descriptor) byte = static_cast<std::uint8_t>(random.integer(0, 255));
+        return descriptors;
     }
-    EXPECT_NEAR(norm, 1, 1e-4);
-    EXPECT_GT(likeness, 0.99);
-}
+    static void add(KnownKeyframes& known, int id, double x, int number, int previous_id) {
+        places::KeyframeView view;
+        view.descriptors = look(number);
+        view.points.assign(view.descriptors.size(), Eigen::Vector3d(0, 0, 1));
+        Pose pose = Pose::Identity();
+        pose.translation().x() = x;
+        known.add(id, previous_id, pose, std::move(view));
+    }
+    static std::vector<int> ids(const std::vector<KnownKeyframes::Candidate>& candidates) {
+        std::vector<int> ids;
+        for (const auto& candidate : candidates) ids.push_back(candidate.keyframe->id);
+        return ids;
+    }
+    /// All that are there.
+    static std::vector<int> all(const KnownKeyframes& known, int up_to) {
+        std::vector<int> ids;
+        for (int id = 0; id <= up_to; ++id)
+            if (known.find(id)) ids.push_back(id);
+        return ids;
+    }
+};
 
-TEST(ThumbnailTest, OneShadeIsAllZero) {
-    for (const float value : make_thumbnail(GrayImage(160, 120, 77))) EXPECT_EQ(value, 0);
-}
-
-TEST(KnownKeyframesTest, TheNewestComesFirstThenTheMostAlike) {
+TEST_F(KnownKeyframesTest, TheNewestComesFirstThenTheMostAlike) {
     KnownKeyframes known(10);
-    for (int i = 1; i <= 4; ++i) known.add(keyframe(i, i, i));
-    EXPECT_EQ(ids(known.candidates(pattern(2), 2)), (std::vector{4, 2}));
-    EXPECT_EQ(ids(known.candidates(pattern(3), 2)), (std::vector{4, 3}));
-    EXPECT_EQ(known.candidates(pattern(3), 100).size(), 4u);
+    for (int i = 1; i <= 4; ++i) add(known, i, i, i, i - 1);
+    EXPECT_EQ(ids(known.candidates(look(2))), (std::vector{4, 2}));
+    std::vector<Descriptor> mixed = look(1, 10);
+    const std::vector<Descriptor> more = look(3, 30);
+    mixed.insert(mixed.end(), more.begin(), more.end());
+    const auto candidates = known.candidates(mixed);
+    EXPECT_EQ(ids(candidates), (std::vector{4, 3, 1}));
+    EXPECT_GT(candidates[1].score, 2 * candidates[2].score);
+    EXPECT_EQ(candidates[0].score, 0);
 }
 
-TEST(KnownKeyframesTest, NoneAreNone) {
+TEST_F(KnownKeyframesTest, NoneAreNone) {
     KnownKeyframes known(10);
-    EXPECT_TRUE(known.candidates(pattern(1), 5).empty());
-    known.add(keyframe(0, 0));
-    EXPECT_TRUE(known.candidates(pattern(1), 0).empty());
+    EXPECT_TRUE(known.candidates(look(1)).empty());
+    add(known, 0, 0, 1, -1);
+    EXPECT_EQ(known.candidates({}).size(), 1u) << "the newest";
     known.clear();
-    EXPECT_TRUE(known.candidates(pattern(1), 5).empty());
+    EXPECT_TRUE(known.candidates(look(1)).empty());
+    EXPECT_EQ(known.find(0), nullptr);
+    add(known, 0, 0, 1, -1);
+    EXPECT_EQ(known.candidates(look(1)).size(), 1u);
 }
 
-TEST(KnownKeyframesTest, OfTheNearestTwoTheOlderGoes) {
+TEST_F(KnownKeyframesTest, OfTheNearestTwoTheOlderGoes) {
     KnownKeyframes known(14);
     // 0, 1, 2, 3 a metre apart but for 2, which is near 1; then more than ten far ones.
-    known.add(keyframe(0, 0));
-    known.add(keyframe(1, 1));
-    known.add(keyframe(2, 1.1));
-    known.add(keyframe(3, 3));
-    for (int i = 4; i < 15; ++i) known.add(keyframe(i, 10 * i));
-    const std::vector<int> left = ids(known.candidates(pattern(1), 100));
-    EXPECT_EQ(left.size(), 14u);
-    EXPECT_EQ(std::count(left.begin(), left.end(), 1), 0);
-    EXPECT_EQ(std::count(left.begin(), left.end(), 2), 1);
+    const double at[] = {0, 1, 1.1, 3};
+    for (int i = 0; i < 15; ++i) add(known, i, i < 4 ? at[i] : 10 * i, i, i - 1);
+    EXPECT_EQ(known.find(1), nullptr);
+    EXPECT_EQ(all(known, 15).size(), 14u);
+    for (const auto& candidate : known.candidates(look(1)))
+        EXPECT_LT(candidate.score, 0.1) << "what went is not found any more";
 }
 
-TEST(KnownKeyframesTest, TheNewestTenStay) {
+TEST_F(KnownKeyframesTest, KeyframesOfTwoPartsAreNotNear) {
+    KnownKeyframes known(13);
+    add(known, 0, 0, 0, -1);
+    add(known, 1, 0.01, 1, -1);
+    add(known, 2, 5, 2, 1);
+    add(known, 3, 6, 3, 2);
+    for (int i = 4; i < 14; ++i) add(known, i, 10 * i, i, i - 1);
+    EXPECT_NE(known.find(0), nullptr);
+    EXPECT_EQ(known.find(2), nullptr);
+}
+
+TEST_F(KnownKeyframesTest, TheNewestTenStay) {
     KnownKeyframes known(12);
     for (int i = 0; i < 40; ++i) {
-        known.add(keyframe(i, 0));  // all in one place
-        const std::vector<int> left = ids(known.candidates(pattern(1), 100));
+        add(known, i, 0, i, i - 1);  // all in one place
+        const std::vector<int> left = all(known, i);
         EXPECT_LE(left.size(), 12u);
         const std::set<int> stay(left.begin(), left.end());
         for (int k = std::max(0, i - 9); k <= i; ++k) EXPECT_TRUE(stay.contains(k)) << k << " of " << i;
     }
 }
 
-TEST(KnownKeyframesTest, ASmallCapacityIsKept) {
+TEST_F(KnownKeyframesTest, ASmallCapacityIsKept) {
     KnownKeyframes known(1);
-    for (int i = 0; i < 5; ++i) known.add(keyframe(i, i));
-    EXPECT_EQ(known.candidates(pattern(1), 100).size(), 1u);
+    for (int i = 0; i < 5; ++i) add(known, i, i, i, i - 1);
+    EXPECT_EQ(all(known, 5).size(), 1u);
+}
+
+TEST_F(KnownKeyframesTest, AroundOneAreThoseOfItsPartMadeAboutThen) {
+    KnownKeyframes known(100);
+    for (int i = 0; i < 60; ++i) add(known, i, i, i, i == 25 ? -1 : i - 1);
+    const auto ids_around = [&](int id) {
+        std::vector<int> ids;
+        for (const KnownKeyframe* keyframe : known.around(*known.find(id))) ids.push_back(keyframe->id);
+        return ids;
+    };
+    EXPECT_EQ(ids_around(20).front(), 0);
+    EXPECT_EQ(ids_around(20).back(), 24);
+    EXPECT_EQ(ids_around(30).front(), 25);
+    EXPECT_EQ(ids_around(30).back(), 50);
+}
+
+TEST_F(KnownKeyframesTest, OneThatGoesOnFromOneThatWentIsOfTheNewestsPart) {
+    KnownKeyframes known(100);
+    add(known, 0, 0, 0, -1);
+    add(known, 5, 1, 1, -1);
+    add(known, 6, 2, 2, 3);
+    EXPECT_EQ(known.find(6)->part, known.find(5)->part);
+    EXPECT_NE(known.find(6)->part, known.find(0)->part);
 }
 
 }  // namespace

@@ -84,5 +84,23 @@ TEST_F(ComparisonTest, EmptyViewsAgreeOnNothing) {
     }
 }
 
+TEST_F(ComparisonTest, WhatOthersSawThroughSpeaksAgainstAView) {
+    KeyframeView view = view_at(here_), beside = view, through = view;
+    view.regions = {wall(1.5)};
+    beside.regions = {wall(1.51)};
+    through.regions = {wall(2.7)};
+    const PlacedView sees_it{&beside, Pose::Identity()}, sees_past{&through, Pose::Identity()};
+    const PlacedView elsewhere{&through, looking(Eigen::Vector3d::Zero(), M_PI)};
+    const auto share = [&](std::vector<PlacedView> others) { return share_seen_through(view, others, 0.05); };
+    EXPECT_EQ(share({}), 0);
+    EXPECT_EQ(share({sees_it}), 0);
+    EXPECT_EQ(share({elsewhere}), 0);
+    EXPECT_EQ(share({sees_past}), 1);
+    EXPECT_EQ(share({sees_past, sees_it}), 0) << "it is there for one of them";
+    EXPECT_EQ(share_seen_through(through, std::vector{PlacedView{&view, Pose::Identity()}}, 0.05), 1)
+        << "the view looks through what another one saw";
+    EXPECT_EQ(share_seen_through(through, std::vector{PlacedView{&view, Pose::Identity()}}, 2), 0);
+}
+
 }  // namespace
 }  // namespace planemap::places

@@ -60,5 +60,18 @@ TEST(KeyframeView, OverlapIsWholeForTheSamePoseAndNoneForTheOppositeOne) {
     EXPECT_DOUBLE_EQ(overlap(KeyframeView{}, a, Pose::Identity()), 0.0);
 }
 
+TEST(KeyframeView, LooksAtTheSameOnlyFromNearby) {
+    test::Random random(3);
+    const auto room = test::make_room(random, Eigen::Vector3d::Zero(), 2.5, 1500);
+    Keyframe keyframe;
+    keyframe.features = test::see(room, Pose::Identity(), random);
+    const KeyframeView view = make_view(keyframe, 1000);
+    EXPECT_TRUE(looks_at_the_same(view, view, Pose::Identity()));
+    EXPECT_TRUE(looks_at_the_same(view, view, test::looking({0.3, 0, 0.2}, 0.2)));
+    EXPECT_FALSE(looks_at_the_same(view, view, test::looking({0, 0, 0}, 2.0)));
+    EXPECT_FALSE(looks_at_the_same(view, view, test::looking({0, 0, 7}, 0))) << "behind whatever is there";
+    EXPECT_FALSE(looks_at_the_same(view, KeyframeView{}, Pose::Identity()));
+}
+
 }  // namespace
 }  // namespace planemap::places

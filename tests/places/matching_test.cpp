@@ -56,5 +56,18 @@ TEST(Matching, AmbiguousDescriptorsDoNotMatch) {
     EXPECT_TRUE(match(many, std::vector<Descriptor>{}, {}).empty());
 }
 
+TEST(MatchAll, KeepsAllThatAreLike) {
+    test::Random random(5);
+    const Descriptor one = random_descriptor(random), other = random_descriptor(random);
+    const std::vector<Descriptor> a{with_flips(one, 3, random), other, with_flips(one, 9, random), one};
+    const std::vector<Descriptor> b{one, random_descriptor(random), other};
+    std::vector<std::pair<int, int>> pairs;
+    for (const Match& match : match_all(a, b, 20, 8)) pairs.emplace_back(match.first, match.second);
+    EXPECT_EQ(pairs, (std::vector<std::pair<int, int>>{{3, 0}, {0, 0}, {2, 0}, {1, 2}}));
+    EXPECT_EQ(match_all(a, b, 20, 2).size(), 3u);
+    EXPECT_TRUE(match_all(a, {}, 20, 8).empty());
+    EXPECT_TRUE(match_all({}, b, 20, 8).empty());
+}
+
 }  // namespace
 }  // namespace planemap::places

@@ -119,6 +119,85 @@ TEST_F(VerificationTest, PlanesSharpenTheRotation) {
     EXPECT_LT(with(4, 4), without(4, 4));
 }
 
+/// A wall with a pattern that comes again every `period` metres along it; 0: never.
+std::vector<Landmark> papered(Random& random, double period) {
+    std::vector<Landmark> landmarks;
+    for (int i = 0; i < 60; ++i) {
+        const Eigen::Vector3d p(random.uniform(0, 0.7), random.uniform(-1, 1), 2.4);
+        Descriptor descriptor = random_descriptor(random);
+        for (int strip = -3; strip <= 3; ++strip) {
+            if (period == 0) descriptor = random_descriptor(random);
+            landmarks.push_back(
+                {p + Eigen::Vector3d((period == 0 ? 0.7 : period) * strip, 0, 0), descriptor});
+        }
+    }
+    return landmarks;
+}
+
+TEST_F(VerificationTest, APatternThatComesAgainIsNoPlace) {
+    for (int seed = 0; seed < 5; ++seed) {
+        const Pose there = here_ * pose_from_twist(0.05 * Twist::Random());
+        for (const double period : {0.0, 0.7}) {
+            const std::vector<Landmark> paper = papered(random_, period);
+            Keyframe a, b;
+            a.features = see(paper, here_, random_);
+            b.features = see(paper, there, random_);
+            const Verification found = verify(make_view(a, 1000), make_view(b, 1000), {}, 7);
+            if (period == 0)
+                EXPECT_EQ(found.verdict, Verdict::kAccepted);
+            else
+                EXPECT_NE(found.verdict, Verdict::kAccepted);
+        }
+    }
+}
+
+TEST_F(VerificationTest, AStepAlongAPatternIsAmbiguousThoughOneStripIsTheNearest) {
+    const std::vector<Landmark> paper = papered(random_, 0.7);
+    Keyframe a, b;
+    a.features = see(paper, here_, random_);
+    b.features = see(paper, here_, random_);
+    // What is at the same place happens to have the same descriptor to the last bit: matching takes it.
+    for (Feature& feature : b.features) {
+        const Feature* nearest = &a.features.front();
+        for (const Feature& other : a.features)
+            if ((other.pixel - feature.pixel).norm() < (nearest->pixel - feature.pixel).norm())
+                nearest = &other;
+        feature.descriptor = nearest->descriptor;
+    }
+    const KeyframeView view_a = make_view(a, 1000), view_b = make_view(b, 1000);
+    EXPECT_EQ(verify(view_a, view_b, {}, 7).verdict, Verdict::kAmbiguous);
+    VerificationOptions any;
+    any.must_be_unique = false;
+    EXPECT_EQ(verify(view_a, view_b, any, 7).verdict, Verdict::kAccepted);
+}
+
+TEST(PlacesApart, ByMetresOrDegrees) {
+    Twist twist = Twist::Zero();
+    EXPECT_FALSE(are_apart(Pose::Identity(), Pose::Identity()));
+    twist << 0.29, 0, 0, 0, 0, 0;
+    EXPECT_FALSE(are_apart(Pose::Identity(), pose_from_twist(twist)));
+    twist << 0, 0.31, 0, 0, 0, 0;
+    EXPECT_TRUE(are_apart(Pose::Identity(), pose_from_twist(twist)));
+    twist << 0, 0, 0, 0, 0.17, 0;
+    EXPECT_FALSE(are_apart(Pose::Identity(), pose_from_twist(twist)));
+    twist << 0, 0, 0, 0, 0.18, 0;
+    EXPECT_TRUE(are_apart(pose_from_twist(twist), Pose::Identity()));
+}
+
+TEST(Rivals, NeedLessThanWhatTheySpeakAgainst) {
+    Verification found;
+    found.inliers = 1000;
+    EXPECT_EQ(rival_options({}, found).min_inliers, VerificationOptions{}.min_inliers);
+    found.inliers = 30;
+    EXPECT_LT(rival_options({}, found).min_inliers, 15);
+    EXPECT_GE(rival_options({}, found).min_inliers, 10) << "so many agree by chance";
+    EXPECT_LT(rival_options({}, found).min_cells, VerificationOptions{}.min_cells);
+    EXPECT_FALSE(rival_options({}, found).must_be_unique);
+    VerificationOptions strict;
+    strict.min_inliers = 5;
+    EXPECT_LE(rival_options(strict, found).min_inliers, 5);
+}
+
 TEST_F(VerificationTest, DegenerateViews) {
     const KeyframeView a = view_at(here_);
     EXPECT_EQ(verify(a, KeyframeView{}, {}, 7).verdict, Verdict::kFewMatches);
