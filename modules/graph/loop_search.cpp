@@ -85,14 +85,59 @@ std::vector<double> LoopSearch::place_scores(const Keyframes& keyframes, const s
 std::optional<places::Verification> LoopSearch::verified(int node, const Keyframes& keyframes,
                                                          const Topology& topology,
                                                          const std::vector<Drift>& drifts) const {
+    const std::optional<places::Verification> found =
+        closure(node, keyframes, topology, drifts, verification_options(options_));
+    if (!found || has_rival(node, keyframes, topology, drifts, *found)) return std::nullopt;
+    return found;
+}
+
+/// What a node explains by itself.
+std::optional<places::Verification> LoopSearch::closure(int node, const Keyframes& keyframes,
+                                                        const Topology& topology,
+                                                        const std::vector<Drift>& drifts,
+                                                        const places::VerificationOptions& options) const {
     const auto seed = static_cast<std::uint64_t>(node) << 32 | static_cast<std::uint64_t>(keyframes.newest());
-    const places::Verification found =
-        verify(keyframes[node].view, keyframes.back().view, verification_options(options_), seed);
+    const places::Verification found = verify(keyframes[node].view, keyframes.back().view, options, seed);
     if (found.verdict != places::Verdict::kAccepted) return std::nullopt;
     const Pose expected = keyframes.between(node, keyframes.newest());
     if (!fits_odometry(expected, drifts[at(node)], found.a_from_b)) return std::nullopt;
     if (!fits_surroundings(node, keyframes, topology, drifts, found.a_from_b)) return std::nullopt;
     return found;
+}
+
+/// Whether another node, one that does not see what the found one sees, puts the newest elsewhere: farther
+/// than drift between the two nodes explains. Asked only where a false closure would do harm: it moves the
+/// newest far, or odometry does not know where it is.
+bool LoopSearch::has_rival(int node, const Keyframes& keyframes, const Topology& topology,
+                           const std::vector<Drift>& drifts, const places::Verification& found) const {
+    constexpr double kScore = 0.25;  // of the found node's, that a rival has at least
+    const int newest = keyframes.newest();
+    const bool is_open = drifts[at(node)].metres > options_.max_place_drift_m;
+    if (!is_open && jump(keyframes.between(node, newest), found.a_from_b) < options_.surroundings_from_m)
+        return false;
+    const Pose world_from_newest = keyframes.pose(node) * found.a_from_b;
+    std::vector<double> scores =
+        appearance_scores(keyframes.back().view, topology.within_steps(newest, options_.min_separation));
+    const double least = std::max(options_.min_appearance, kScore * scores[at(node)]);
+    for (int i = 0; i <= newest; ++i) {
+        if (scores[at(i)] < least) continue;
+        const Pose i_from_newest = keyframes.pose(i).inverse(Eigen::Isometry) * world_from_newest;
+        if (i == node || looks_at_the_same(keyframes[i].view, keyframes.back().view, i_from_newest))
+            scores[at(i)] = 0;
+    }
+    const places::VerificationOptions options = rival_options(verification_options(options_), found);
+    const std::vector<Drift> of_node = topology.drifts_from(node);
+    for (const int other : peaks(scores, least, options_.appearance_candidates)) {
+        const auto rival = closure(other, keyframes, topology, drifts, options);
+        if (!rival) continue;
+        const Pose apart =
+            world_from_newest.inverse(Eigen::Isometry) * keyframes.pose(other) * rival->a_from_b;
+        const Drift& drift = of_node[at(other)];
+        if (apart.translation().norm() > places::kApart_m + drift.metres ||
+            rotation_angle(apart) > places::kApart_rad + drift.radians)
+            return true;
+    }
+    return false;
 }
 
 bool LoopSearch::fits_odometry(const Pose& expected, const Drift& drift, const Pose& node_from_newest) const {

@@ -31,8 +31,9 @@ class LoopSearch {
     std::vector<int> candidates(const Keyframes& keyframes, const Topology& topology,
                                 const std::vector<Drift>& drifts) const;
 
-    /// The loop closure from a node to the newest one, if their views agree and neither odometry nor what was
-    /// seen around them speaks against it.
+    /// The loop closure from a node to the newest one, if their views agree, neither odometry nor what was
+    /// seen around them speaks against it, and, where odometry leaves that open, no other node explains the
+    /// newest view from elsewhere.
     std::optional<places::Verification> verified(int node, const Keyframes& keyframes,
                                                  const Topology& topology,
                                                  const std::vector<Drift>& drifts) const;
@@ -44,6 +45,11 @@ class LoopSearch {
                                           const std::vector<bool>& near) const;
     std::vector<double> place_scores(const Keyframes& keyframes, const std::vector<bool>& near,
                                      const std::vector<Drift>& drifts) const;
+    std::optional<places::Verification> closure(int node, const Keyframes& keyframes,
+                                                const Topology& topology, const std::vector<Drift>& drifts,
+                                                const places::VerificationOptions& options) const;
+    bool has_rival(int node, const Keyframes& keyframes, const Topology& topology,
+                   const std::vector<Drift>& drifts, const places::Verification& found) const;
     bool fits_odometry(const Pose& expected, const Drift& drift, const Pose& node_from_newest) const;
     bool fits_surroundings(int node, const Keyframes& keyframes, const Topology& topology,
                            const std::vector<Drift>& drifts, const Pose& node_from_newest) const;

@@ -76,6 +76,32 @@ TEST_F(LoopSearchTest, OtherPlacesAreNotVerified) {
         EXPECT_FALSE(search.verified(node, round_.keyframes, round_.topology, drifts(round_))) << node;
 }
 
+/// A round in a room, then one in its twin 8 m beside, if asked for, and back to where it began.
+GraphParts tour(const std::vector<test::Landmark>& room, bool with_twin, Random& random) {
+    const Eigen::Vector3d beside(8, 0, 0);
+    std::vector<test::Landmark> landmarks = room;
+    if (with_twin)
+        for (const test::Landmark& landmark : room)
+            landmarks.push_back({landmark.position + beside, landmark.descriptor});
+    std::vector<Pose> poses = square_loop(3, 4, 1.0);
+    const std::vector<Pose> twin = square_loop(3, 4, 1.0, beside);
+    poses.insert(poses.end(), twin.begin(), twin.end());
+    poses.push_back(poses.front());
+    return parts_of(test::walk(landmarks, poses, random));
+}
+
+TEST_F(LoopSearchTest, WhereOdometryDoesNotKnowAnythingATwinRefutes) {
+    const std::vector<test::Landmark> room = make_room(random_, Eigen::Vector3d::Zero(), 2.5, 1500);
+    for (const bool with_twin : {false, true}) {
+        const GraphParts parts = tour(room, with_twin, random_);
+        const LoopSearch search = search_for(parts);
+        const std::vector<Drift> anywhere(static_cast<std::size_t>(parts.keyframes.size()), Drift{1000, 10});
+        EXPECT_NE(search.verified(0, parts.keyframes, parts.topology, anywhere).has_value(), with_twin);
+        const std::vector<Drift> here(static_cast<std::size_t>(parts.keyframes.size()), Drift{0.1, 0.1});
+        EXPECT_TRUE(search.verified(0, parts.keyframes, parts.topology, here)) << "it cannot be in the other";
+    }
+}
+
 TEST_F(LoopSearchTest, WhatOdometryRulesOutIsNotVerified) {
     Pose aside = Pose::Identity();
     aside.translation().x() = 3;
