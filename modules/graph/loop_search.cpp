@@ -130,11 +130,7 @@ bool LoopSearch::has_rival(int node, const Keyframes& keyframes, const Topology&
     for (const int other : peaks(scores, least, options_.appearance_candidates)) {
         const auto rival = closure(other, keyframes, topology, drifts, options);
         if (!rival) continue;
-        const Pose apart =
-            world_from_newest.inverse(Eigen::Isometry) * keyframes.pose(other) * rival->a_from_b;
-        const Drift& drift = of_node[at(other)];
-        if (apart.translation().norm() > places::kApart_m + drift.metres ||
-            rotation_angle(apart) > places::kApart_rad + drift.radians)
+        if (!fits_odometry(world_from_newest, of_node[at(other)], keyframes.pose(other) * rival->a_from_b))
             return true;
     }
     return false;
