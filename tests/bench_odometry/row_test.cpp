@@ -44,6 +44,23 @@ TEST(Row, ComparesWithTheTruth) {
     EXPECT_EQ(json["keyframes"], 7);
 }
 
+TEST(Row, HoldsErrorsAgainstTheirCovariance) {
+    const Trajectory truth = circle(1);
+    MethodRun run = run_of(truth, 1);
+    for (std::size_t i = 1; i < 5; ++i) {
+        Relative relative{truth[0].utime, truth[i].utime,
+                          truth[0].world_from_camera.inverse() * truth[i].world_from_camera,
+                          1e-4 * Matrix6d::Identity()};
+        relative.keyframe_from_camera.translation().x() += 0.01 * static_cast<double>(i);  // i sigma
+        run.relatives.push_back(relative);
+    }
+    EXPECT_EQ(to_json(make_row("a", "b", truth, run))["nees_share"], 0.75);
+    run.relatives[3].utime += 1000000000;  // no truth there
+    EXPECT_EQ(to_json(make_row("a", "b", truth, run))["nees_share"], 1);
+    benchmark::expect_null(to_json(make_row("a", "b", std::nullopt, run)), {"nees_share"});
+    benchmark::expect_null(to_json(make_row("a", "b", truth, run_of(truth, 1))), {"nees_share"});
+}
+
 TEST(Row, WhatIsNotKnownIsNull) {
     const Trajectory truth = circle(1);
     const Json without = to_json(make_row("a", "b", std::nullopt, run_of(truth, 1)));

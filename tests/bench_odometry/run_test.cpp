@@ -18,6 +18,8 @@ TEST(Run, ComesThroughJsonExactly) {
     run.graph = {5, 6, 0.2, 3};
     run.keyframes = 3;
     run.closures = {{1, 2, run.trajectory[7].world_from_camera}};
+    run.relatives = {{3, 4, run.trajectory[5].world_from_camera, Matrix6d::Identity() / 3}};
+    run.relatives[0].covariance(1, 4) = 0.1;
     const MethodRun same = run_from_json(nlohmann::json::parse(to_json(run).dump()));
     EXPECT_EQ(same.frames, run.frames);
     EXPECT_EQ(same.keyframes, 3);
@@ -32,6 +34,10 @@ TEST(Run, ComesThroughJsonExactly) {
     ASSERT_EQ(same.closures.size(), 1u);
     EXPECT_EQ(same.closures[0].to_utime, 2);
     EXPECT_EQ(same.closures[0].from_from_to.matrix(), run.closures[0].from_from_to.matrix());
+    ASSERT_EQ(same.relatives.size(), 1u);
+    EXPECT_EQ(same.relatives[0].keyframe_utime, 3);
+    EXPECT_EQ(same.relatives[0].utime, 4);
+    EXPECT_EQ(same.relatives[0].covariance, run.relatives[0].covariance);
 }
 
 TEST(StageTime, IsZeroForAStageThatNeverRan) {

@@ -2,6 +2,7 @@
 // planemap-bench-odometry: odometry and graph beside other people's, on the same sequences.
 #include <opencv2/core/version.hpp>
 
+#include "bench_odometry/bad_moments.hpp"
 #include "bench_odometry/benchmark.hpp"
 #include "bench_odometry/plots.hpp"
 #include "bench_odometry/table2.hpp"
@@ -19,6 +20,8 @@ struct Arguments : BenchmarkOptions {
     std::string methods = benchmark::names_of(known_methods());
     std::filesystem::path plots;
     bool table2 = false;
+    bool bad_moments = false;
+    std::string moments;
 };
 
 std::string description() {
@@ -32,6 +35,8 @@ std::string description() {
            "--odometry-max-points 200\n"
            "  planemap-bench-odometry --sequences redkitchen --plots out/plots\n"
            "  planemap-bench-odometry --table2                      the paper's Table 2\n"
+           "  planemap-bench-odometry --bad-moments                 what is said of covered, stuck, dark ... "
+           "images\n"
            "Sequences (and any sim:..., see planemap-simulate --help; seed=1..5 is five of them):\n" +
            benchmark::described(known_sequences(), 19) + "Methods:\n" +
            benchmark::described(known_methods(), 19) +
@@ -42,6 +47,9 @@ std::string description() {
            "  frame mm deg   relative pose error from pose to pose, RMSE\n"
            "  1 s mm deg     relative pose error over one second, RMSE\n"
            "  scale %        what the estimate still has to be scaled by: -1 is 1 % too large\n"
+           "  NEES %         frames whose pose against their keyframe, odometry_t's, has a normalised "
+           "estimation error\n"
+           "                 squared (6 values, by odometry_t's covariance) below 12.59: 95 if it is honest\n"
            "  ms, p95        of the odometry, a frame: CPU time of its thread, median and 95th percentile;\n"
            "                 decoding, registering depth to colour and segmentation are not in it\n"
            "  seg ms         of the segmentation, a frame: median CPU time\n"
@@ -56,6 +64,33 @@ std::string description() {
            "one "
            "to\n"
            "the next; mean and deviation of the runs' RMSE.\n"
+           "Bad moments: images are disturbed, and each frame from then on is judged. Sequences:\n" +
+           benchmark::described(bad_sequence_infos(), 23) + "Moments:\n" +
+           benchmark::described(known_disturbances(), 23) +
+           "A pose is held against the last tracked frame before the moment, both in the odom frame; in a "
+           "part "
+           "that\n"
+           "begins later (a keyframe without an edge, or with one whose sigma is over 20 cm or 10 deg), "
+           "against "
+           "the\n"
+           "first tracked frame of that part: nothing is claimed of where two parts lie about each other.\n"
+           "  wrong          more than 10 cm or 5 deg off, and neither lost nor both said to be degenerate "
+           "or "
+           "stale\n"
+           "                 and within 3 sigma; sigma is of both frames and of the keyframes' edges in "
+           "between\n"
+           "  no pose        lost, or a sigma over 20 cm or 10 deg\n"
+           "  degen., stale  frames of that status\n"
+           "  parts          keyframes without an edge since\n"
+           "  worst m, deg   largest errors of poses that are right or wrong, not of those that are "
+           "admitted\n"
+           "  NEES %         as above\n"
+           "Returns: a round, then 21 times a pause of 180 s and 12 frames of the second round. Found: "
+           "within "
+           "these\n"
+           "a frame has a pose against a keyframe from before the pause, or a loop closure ties one to such; "
+           "false:\n"
+           "one of these relations is false as a loop closure is.\n"
            "Simulated sequences are rendered once and kept in the cache (--cache); they take up to 300 kB a "
            "frame.";
 }
@@ -70,6 +105,10 @@ void add_flags(messages::Flags& flags, Arguments& arguments) {
     flags.add(
         "table2", arguments.table2,
         "the paper's Table 2 instead: five places of an office visited again and again, and redkitchen");
+    flags.add("bad-moments", arguments.bad_moments,
+              "bad moments instead: of --sequences those in its own list, by the default method");
+    flags.add("moments", arguments.moments,
+              "comma-separated names of bad moments; empty: all, and the returns");
     flags.add(options_of(arguments.pipeline.segmentation), "segmentation-");
     flags.add(options_of(arguments.pipeline.odometry), "odometry-");
     flags.add(options_of(arguments.pipeline.graph), "graph-");
@@ -104,7 +143,22 @@ std::vector<MethodInfo> methods_of(const Arguments& arguments) {
     return methods;
 }
 
+/// Without --sequences, bad moments are of their own.
+std::string bad_sequences_of(const Arguments& arguments) {
+    if (arguments.sequences != benchmark::names_of(known_sequences())) return arguments.sequences;
+    return benchmark::names_of(bad_sequence_infos());
+}
+
+int run_bad_moments(const Arguments& arguments) {
+    arguments.validate();
+    benchmark::Report report(arguments, "no peers");
+    print_bad_moments(arguments, bad_sequences_of(arguments), arguments.moments, report);
+    report.finish();
+    return 0;
+}
+
 int run(const Arguments& arguments) {
+    if (arguments.bad_moments) return run_bad_moments(arguments);
     const std::vector<SequenceInfo> sequences =
         benchmark::parse_sequences(arguments.sequences, known_sequences());
     const std::vector<MethodInfo> methods = methods_of(arguments);

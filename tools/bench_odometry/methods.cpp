@@ -2,9 +2,13 @@
 #include "bench_odometry/methods.hpp"
 
 #include <algorithm>
+#include <map>
 
 #include "bench_odometry/peers.hpp"
 #include "benchmark/choices.hpp"
+#include "messages/channels.hpp"
+#include "messages/convert.hpp"
+#include "messages/decode.hpp"
 #include "run/input.hpp"
 
 namespace planemap::bench_odometry {
@@ -33,11 +37,29 @@ std::vector<Closure> closures_of(pipeline::Pipeline& pipeline) {
     return closures;
 }
 
+/// What odometry says of frames against keyframes; `keyframes` are the moments of these by their ids.
+std::vector<Relative> relatives_of(const pipeline::Pipeline& pipeline,
+                                   const std::map<int, std::int64_t>& keyframes) {
+    std::vector<Relative> relatives;
+    for (const OdometryEstimate& estimate : pipeline.estimates()) {
+        const auto keyframe = keyframes.find(estimate.keyframe_id);
+        if (!is_tracked(estimate.status) || keyframe == keyframes.end()) continue;
+        relatives.push_back(
+            {keyframe->second, estimate.pose_utime, estimate.keyframe_from_camera, estimate.covariance});
+    }
+    return relatives;
+}
+
 MethodRun run_planemap(const std::string& input_name, std::int64_t max_frames,
                        const pipeline::PipelineOptions& options,
                        const std::function<void(std::int64_t)>& on_frame) {
     messages::Bus bus("memq://");
     pipeline::Pipeline pipeline(bus, options);
+    std::map<int, std::int64_t> keyframes;
+    bus.subscribe(messages::channels::kKeyframe, [&](const messages::RawMessage& message) {
+        const Keyframe keyframe = messages::from_message(messages::decode<keyframe_t>(message.bytes));
+        keyframes[keyframe.id] = keyframe.pose_utime;
+    });
     const std::unique_ptr<Input> input = open_input(input_name, bus, {.camera = options.camera});
     feed_all(*input, max_frames, [&](std::int64_t frames) {
         pipeline.settle();
@@ -47,6 +69,7 @@ MethodRun run_planemap(const std::string& input_name, std::int64_t max_frames,
     MethodRun run;
     run.frames = input->frames();
     run.trajectory = pipeline.trajectory();
+    run.relatives = relatives_of(pipeline, keyframes);
     run.tracking = stage_time(pipeline.odometry().status().work_cpu_ms());
     run.segmentation = stage_time(pipeline.segmentation().status().work_cpu_ms());
     run.decoding = stage_time(pipeline.decoder().decode_ms());

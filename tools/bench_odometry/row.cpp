@@ -31,6 +31,24 @@ Json times_known(const StageTime& stage, double ms) {
     return stage.count > 0 ? Json(ms) : Json(nullptr);
 }
 
+/// Truth is recorded at 25 to 100 Hz; a fifth of a second without is a gap.
+constexpr std::int64_t kMaxGap_us = 200000;
+
+std::optional<double> nees_share(const Trajectory& truth, const std::vector<Relative>& relatives) {
+    int count = 0, below = 0;
+    for (const Relative& relative : relatives) {
+        const auto keyframe = pose_at(truth, relative.keyframe_utime, kMaxGap_us);
+        const auto camera = pose_at(truth, relative.utime, kMaxGap_us);
+        if (!keyframe || !camera) continue;
+        const auto nees = nees_of(pose_error(relative.keyframe_from_camera, keyframe->inverse() * *camera),
+                                  relative.covariance);
+        count += nees.has_value();
+        below += nees && *nees < kNees95;
+    }
+    if (count == 0) return std::nullopt;
+    return static_cast<double>(below) / count;
+}
+
 double too_large_percent(double scale) {
     return 100 * (scale - 1);
 }
@@ -44,6 +62,7 @@ Row make_row(const std::string& sequence, const std::string& method, const std::
     row.method = method;
     row.run = std::move(run);
     if (truth) row.evaluation = evaluate(*truth, row.run.trajectory, {});
+    if (truth) row.nees_share = nees_share(*truth, row.run.relatives);
     for (const Closure& closure : row.run.closures)
         row.loops.push_back(judge(truth.value_or(Trajectory()), closure));
     return row;
@@ -65,6 +84,8 @@ const benchmark::Table& table() {
                                          {"deg", "rpe_1s_deg", 6, 3},
                                          kBar,
                                          {"scale %", "scale", 7, 2, too_large_percent},
+                                         kBar,
+                                         {"NEES %", "nees_share", 6, 0, benchmark::percent},
                                          kBar,
                                          {"ms", "median_ms", 6, 2},
                                          {"p95", "p95_ms", 6, 2},
@@ -96,6 +117,7 @@ Json to_json(const Row& row) {
             {"rpe_1s_m", known(e.rpe_1s, metres)},
             {"rpe_1s_deg", known(e.rpe_1s, degrees)},
             {"scale", known(e.ate, [](const AbsoluteError& error) { return number(error.scale); })},
+            {"nees_share", known(row.nees_share, [](double share) { return share; })},
             {"lost", row.lost()},
             {"median_ms", times_known(row.run.tracking, row.run.tracking.median_ms)},
             {"p95_ms", times_known(row.run.tracking, row.run.tracking.p95_ms)},

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "bench_odometry/pose_judge.hpp"
 #include "bench_odometry/run.hpp"
 #include "benchmark/table.hpp"
 #include "evaluate/evaluation.hpp"
@@ -20,6 +21,9 @@ struct Row {
     double cpu_s = 0, peak_rss_mb = 0;               ///< of the whole process, reading and decoding included
     std::optional<Evaluation> evaluation;            ///< nothing without truth
     std::vector<std::optional<ClosureError>> loops;  ///< of run.closures, see judge()
+    /// Share of run.relatives whose normalised estimation error squared is below kNees95; nothing without
+    /// truth or covariance.
+    std::optional<double> nees_share;
 
     /// Frames without a pose: broken ones, and those before the first keyframe, included.
     std::int64_t lost() const { return run.frames - static_cast<std::int64_t>(run.trajectory.size()); }

@@ -16,6 +16,16 @@ struct adl_serializer<planemap::Pose> {
 };
 
 template <>
+struct adl_serializer<planemap::Matrix6d> {
+    static void to_json(json& out, const planemap::Matrix6d& matrix) {
+        out = std::vector<double>(matrix.data(), matrix.data() + matrix.size());
+    }
+    static void from_json(const json& in, planemap::Matrix6d& matrix) {
+        matrix = Eigen::Map<const planemap::Matrix6d>(in.get<std::vector<double>>().data());
+    }
+};
+
+template <>
 struct adl_serializer<planemap::StampedPose> {
     static void to_json(json& out, const planemap::StampedPose& pose) {
         out = {pose.utime, json(pose.world_from_camera)};
@@ -32,8 +42,9 @@ namespace planemap::bench_odometry {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(StageTime, median_ms, p95_ms, total_s, count)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Closure, from_utime, to_utime, from_from_to)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Relative, keyframe_utime, utime, keyframe_from_camera, covariance)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(MethodRun, frames, trajectory, tracking, graph, segmentation, decoding,
-                                   keyframes, closures)
+                                   keyframes, closures, relatives)
 
 StageTime stage_time(const Histogram& ms) {
     return {ms.median(), ms.p95(), ms.sum() / 1000, ms.count()};

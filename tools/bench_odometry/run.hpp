@@ -19,6 +19,13 @@ struct StageTime {
 };
 StageTime stage_time(const Histogram& ms);
 
+/// A frame's pose against its keyframe, as odometry_t says it.
+struct Relative {
+    std::int64_t keyframe_utime = 0, utime = 0;  ///< moments of the two poses, microseconds
+    Pose keyframe_from_camera = Pose::Identity();
+    Matrix6d covariance = Matrix6d::Zero();  ///< translation, rotation; camera frame
+};
+
 struct MethodRun {
     std::int64_t frames = 0;  ///< read, lost and broken ones included
     Trajectory trajectory;    ///< frames that have a pose, at the moments that they are of
@@ -28,6 +35,7 @@ struct MethodRun {
     StageTime decoding;       ///< images, and depth registered to colour, a frame; wall clock
     int keyframes = 0;
     std::vector<Closure> closures;
+    std::vector<Relative> relatives;  ///< frames with a pose; empty where the method says no covariance
 };
 
 /// For the way from a child process to its parent: exact.
