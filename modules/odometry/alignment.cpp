@@ -3,6 +3,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace planemap::odometry {
@@ -41,8 +42,12 @@ Seen see(const Alignment& a, const PointTerm& term, const Pose& camera_from_keyf
     return {moved((offset + late) * a.velocity, p), moved(late * a.velocity, p)};
 }
 
-void add_points(const Alignment& a, const Pose& camera_from_keyframe, double offset, Normal& normal) {
+/// normal_of(term) is what a point is added to.
+template <typename NormalOf>
+void add_points(const Alignment& a, const Pose& camera_from_keyframe, double offset,
+                const NormalOf& normal_of) {
     for (const PointTerm& term : a.points) {
+        Normal& normal = normal_of(term);
         const Seen seen = see(a, term, camera_from_keyframe, offset);
         Eigen::Vector3d r, r_depth;
         Eigen::Matrix<double, 3, 6> j, j_depth;
@@ -69,12 +74,39 @@ void add_points(const Alignment& a, const Pose& camera_from_keyframe, double off
     }
 }
 
+Twist gradient_at(const QuadraticTerm& term, const Pose& camera_from_keyframe) {
+    return term.gradient + term.information * twist_from_pose(camera_from_keyframe * term.at.inverse());
+}
+
 void add_quadratics(const Alignment& a, const Pose& camera_from_keyframe, Normal& normal) {
     for (const QuadraticTerm& term : a.quadratics) {
-        const Twist x = twist_from_pose(camera_from_keyframe * term.at.inverse());
         normal.information.topLeftCorner<6, 6>() += term.information;
-        normal.gradient.head<6>() += term.gradient + term.information * x;
+        normal.gradient.head<6>() += gradient_at(term, camera_from_keyframe);
     }
+}
+
+/// Sums outer products of the blocks' gradients, the time offset being solved for; see
+/// AlignmentResult::scatter. `offset_share` is what a gradient by the offset does to that by x.
+Matrix6d scatter_of(const Alignment& a, const AlignmentResult& result, const Twist& offset_share) {
+    std::array<Normal, kTiles> tiles;
+    add_points(a, result.camera_from_keyframe, result.color_offset_s, [&](const PointTerm& term) -> Normal& {
+        return tiles[static_cast<std::size_t>(tile_of(a.camera, term.pixel.x(), term.pixel.y()))];
+    });
+    Matrix6d scatter = Matrix6d::Zero();
+    int blocks = 0;
+    const auto add = [&](const Twist& gradient) {
+        scatter += gradient * gradient.transpose();
+        ++blocks;
+    };
+    for (const Normal& tile : tiles)
+        if (tile.information(0, 0) > 0) add(tile.gradient.head<6>() - tile.gradient(kOffset) * offset_share);
+    for (const QuadraticTerm& term : a.quadratics)
+        if (!term.is_prior && term.information.trace() > 0)
+            add(gradient_at(term, result.camera_from_keyframe));
+    // Six values were fitted to them.
+    constexpr double kFitted = 6, kMostCorrection = 4;
+    return scatter *
+           (blocks > kFitted ? std::min(kMostCorrection, blocks / (blocks - kFitted)) : kMostCorrection);
 }
 
 void mark_inliers(const Alignment& a, AlignmentResult& result) {
@@ -95,6 +127,20 @@ void mark_inliers(const Alignment& a, AlignmentResult& result) {
 }
 
 }  // namespace
+
+int tile_of(const PinholeCamera& camera, double u, double v) {
+    const auto part = [](double at, int size, int parts) {
+        const double share = (at + 0.5) / size * parts;
+        return share > 0 ? std::min(parts - 1, static_cast<int>(std::min<double>(share, parts))) : 0;
+    };
+    return part(v, camera.height, kTileRows) * kTileColumns + part(u, camera.width, kTileColumns);
+}
+
+Matrix6d covariance_of(const AlignmentResult& result) {
+    const Matrix6d assumed = result.information.ldlt().solve(Matrix6d::Identity());
+    const Matrix6d found = assumed * result.scatter * assumed;
+    return assumed + 0.5 * (found + found.transpose());
+}
 
 bool point_residual(const PinholeCamera& camera, const PointTerm& term, const Eigen::Vector3d& p,
                     Eigen::Vector3d& residual, Eigen::Matrix<double, 3, 6>* jacobian) {
@@ -125,7 +171,8 @@ AlignmentResult align(const Alignment& a, const Pose& initial, int max_iteration
     Eigen::LDLT<Eigen::Matrix<double, kReadout, kReadout>> solver;
     for (int i = 0; i < max_iterations && !result.converged; ++i) {
         normal = Normal{};
-        add_points(a, result.camera_from_keyframe, result.color_offset_s, normal);
+        add_points(a, result.camera_from_keyframe, result.color_offset_s,
+                   [&](const PointTerm&) -> Normal& { return normal; });
         add_quadratics(a, result.camera_from_keyframe, normal);
         normal.information(kOffset, kOffset) += offset_information;
         normal.gradient(kOffset) += offset_information * (result.color_offset_s - a.color_offset_s);
@@ -140,10 +187,13 @@ AlignmentResult align(const Alignment& a, const Pose& initial, int max_iteration
     result.camera_from_keyframe = orthonormalised(result.camera_from_keyframe);
     // The time offset is marginalised out; and all else out of the readout.
     result.information = normal.information.topLeftCorner<6, 6>();
+    Twist offset_share = Twist::Zero();
     if (normal.information(kOffset, kOffset) > 0) {
         const Twist coupling = normal.information.block<6, 1>(0, kOffset);
-        result.information -= coupling * coupling.transpose() / normal.information(kOffset, kOffset);
+        offset_share = coupling / normal.information(kOffset, kOffset);
+        result.information -= offset_share * coupling.transpose();
     }
+    result.scatter = scatter_of(a, result, offset_share);
     const Eigen::Matrix<double, kReadout, 1> coupling = normal.information.topRightCorner<kReadout, 1>();
     const Eigen::Matrix<double, kReadout, 1> solved = solver.solve(coupling);
     result.readout_information = std::max(0.0, normal.information(kReadout, kReadout) - coupling.dot(solved));

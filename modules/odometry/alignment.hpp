@@ -26,7 +26,14 @@ struct QuadraticTerm {
     Pose at = Pose::Identity();  ///< camera_from_keyframe
     Matrix6d information = Matrix6d::Zero();
     Twist gradient = Twist::Zero();
+    bool is_prior = false;  ///< known beforehand, as well as its information says; else measured
 };
+
+/// Measurements of one tile of the image err together, those of different tiles each by themselves: what
+/// errors of lens, depth and moments of exposure do to neighbours is alike.
+inline constexpr int kTileColumns = 4, kTileRows = 3, kTiles = kTileColumns * kTileRows;
+/// The tile of a pixel; of one outside, the nearest.
+int tile_of(const PinholeCamera& camera, double u, double v);
 
 /// What align() minimises. The unknowns are camera_from_keyframe at the depth image's time and the time from
 /// the depth image to the colour image; features are seen at the colour image's time. With a rolling shutter
@@ -47,7 +54,10 @@ struct AlignmentResult {
     Pose camera_from_keyframe = Pose::Identity();
     double color_offset_s = 0;
     Matrix6d information = Matrix6d::Zero();  ///< of the small motion x, points and quadratics together
-    std::vector<char> inlier;                 ///< one per point
+    /// Of the gradient by x: how far apart tiles of points and measured quadratics pull, as they are found to
+    /// at the solution; as large as the information where errors are independent and as large as assumed.
+    Matrix6d scatter = Matrix6d::Zero();
+    std::vector<char> inlier;  ///< one per point
     int inliers = 0;
     double residual_px = 0;  ///< RMS reprojection error of the inliers, pixels
     /// Cost of another readout r, with pose and offset at their best for it:
@@ -55,6 +65,10 @@ struct AlignmentResult {
     double readout_information = 0, readout_gradient = 0;
     bool converged = false;  ///< the last step was small and all values are finite
 };
+
+/// What the residuals say of x beside their assumed sizes: the inverse information, and, added to it, the
+/// cluster-robust (sandwich) covariance (White 1980, Liang and Zeger 1986) of errors that hang together.
+Matrix6d covariance_of(const AlignmentResult& result);
 
 /// Gauss-Newton with a heavy-tailed weight on the points, from `initial`.
 AlignmentResult align(const Alignment& alignment, const Pose& initial, int max_iterations = 20);

@@ -2,6 +2,7 @@
 #include "odometry/camera_motion.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace planemap::odometry {
 namespace {
@@ -80,8 +81,25 @@ void CameraMotion::follow(std::int64_t utime, Located& located) {
         filter_.start(located.odom_from_camera());
     else
         located.move_to(filter_.update(located.odom_from_camera(), elapsed));
+    step_s_ = elapsed;
     pose_utime_ = utime;
     lost_frames_ = 0;
+}
+
+Matrix6d CameraMotion::covariance_of_moment(const Located& located, const Twist& keyframe_velocity) const {
+    const Pose& camera_from_keyframe = located.track.alignment.camera_from_keyframe;
+    // The keyframe's motion as seen from the camera.
+    const Eigen::Vector3d turn = camera_from_keyframe.linear() * keyframe_velocity.tail<3>();
+    Twist change = velocity();
+    change.tail<3>() -= turn;
+    change.head<3>() -= camera_from_keyframe.linear() * keyframe_velocity.head<3>() +
+                        camera_from_keyframe.translation().cross(turn);
+    const Twist late = OdometryOptions::stamp_sigma_s * change;
+    Matrix6d covariance = late * late.transpose();
+    const double offset_s = located.track.by_features ? located.track.alignment.color_offset_s : 0;
+    const double share = step_s_ > 0 ? std::min(1.0, std::abs(offset_s) / step_s_) : 0;
+    covariance.diagonal() += 2 * filter_.jitter() + share * share * filter_.surprise();
+    return covariance;
 }
 
 void CameraMotion::lose() {

@@ -38,6 +38,11 @@ class CameraMotion {
     void start(std::int64_t utime);
     /// Takes over a frame's pose, without its jitter (see Located::filtered), and the motion since the last.
     void follow(std::int64_t utime, Located& located);
+    /// What moments and jitter add to Located::covariance() of the frame that was followed last. Stamps may
+    /// all be late by one and the same time, which matters as far as the camera moves otherwise now than at
+    /// the keyframe (keyframe_velocity, as velocity()); both frames jitter; and what colour shows is brought
+    /// to depth's moment by a velocity that is off by as much as motions were found to be.
+    Matrix6d covariance_of_moment(const Located& located, const Twist& keyframe_velocity) const;
     /// A frame has no pose: nothing is known of the motion any more.
     void lose();
 
@@ -47,6 +52,7 @@ class CameraMotion {
     double acceleration_, angular_acceleration_, max_prediction_s_;
     MotionFilter filter_;          ///< of the last frame with a pose
     std::int64_t pose_utime_ = 0;  ///< of the last frame with a pose
+    double step_s_ = 0;            ///< to it from the one before
     int lost_frames_ = 0;          ///< since then
 };
 

@@ -37,7 +37,7 @@ std::optional<Track> align_matches(const PinholeCamera& camera, std::span<const 
     Alignment alignment;
     alignment.camera = camera;
     alignment.points = matches;
-    alignment.quadratics.push_back({initial, Matrix6d::Identity(), Twist::Zero()});
+    alignment.quadratics.push_back({initial, Matrix6d::Identity(), Twist::Zero(), true});
     Track track;
     track.alignment = align(alignment, initial);
     if (!track.alignment.converged || track.alignment.inliers < min_inliers) return std::nullopt;

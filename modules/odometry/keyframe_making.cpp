@@ -62,6 +62,7 @@ LocalKeyframe make_local_keyframe(const OdometryOptions& options, const Prepared
                                   const FrameMotion& motion) {
     LocalKeyframe keyframe;
     keyframe.regions = frame.regions;
+    keyframe.velocity = motion.velocity;
     keyframe.patches = PlanarPatches(*frame.depth, frame.camera->color, *frame.camera,
                                      options.surface_cell_px, frame.readout_s * motion.velocity);
     keyframe.patches.lay_on(frame.regions, frame.camera->noise);

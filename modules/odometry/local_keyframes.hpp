@@ -30,6 +30,7 @@ struct LocalKeyframe {
     FlowPyramid pyramid;  ///< with derivatives
     PlanarPatches patches;
     std::vector<PlanarRegion> regions;
+    Twist velocity = Twist::Zero();  ///< of the camera then, see MotionFilter::velocity()
 
     std::vector<cv::Point2f> pixels() const;  ///< of the points
 };

@@ -52,6 +52,20 @@ Twist MotionFilter::velocity_gain(double elapsed_s) const {
     return gain;
 }
 
+Twist MotionFilter::jitter() const {
+    const double t = translation_.alpha(), r = rotation_.alpha();
+    Twist shares;
+    shares << Eigen::Vector3d::Constant(t * (1 - t)), Eigen::Vector3d::Constant(1 - r);
+    return shares.cwiseProduct(surprise());
+}
+
+Twist MotionFilter::surprise() const {
+    Twist variances;
+    variances << Eigen::Vector3d::Constant(translation_.mean_square / 3),
+        Eigen::Vector3d::Constant(rotation_.mean_square / 3);
+    return variances;
+}
+
 Pose MotionFilter::update(const Pose& odom_from_camera, double elapsed_s) {
     const Pose camera_from_odom = odom_from_camera.inverse();
     if (elapsed_s > longest_step_s_) {

@@ -35,6 +35,12 @@ class MotionFilter {
     /// What the velocity changes by for a unit of innovation (translation three times, rotation three times),
     /// a second.
     Twist velocity_gain(double elapsed_s) const;
+    /// Variances of a measured pose beside the motion, as innovations tell: of white innovations of variance
+    /// S, a filter of gain alpha takes (1 - alpha) S for jitter (Mehra 1970). Of translations what is left
+    /// after filtering. Zero while nothing is known.
+    Twist jitter() const;
+    /// Variances of innovations: how far a motion is off from one pose to the next.
+    Twist surprise() const;
 
   private:
     /// Innovations of translation or of rotation.

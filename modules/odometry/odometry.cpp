@@ -49,6 +49,7 @@ class Odometry::State {
     Keyframe add_keyframe(PreparedFrame& frame, LocalKeyframe local, const Located* located,
                           const FrameMotion& motion);
     OdometryEstimate estimate_at(const Keyframe& keyframe) const;
+    Matrix6d covariance(const Located& located) const;
 
     OdometryOptions options_;
     CameraInfo camera_;
@@ -220,7 +221,7 @@ OdometryResult Odometry::State::follow(PreparedFrame& frame, Located& located) {
     estimate.odom_from_camera = located.odom_from_camera();
     estimate.keyframe_id = located.keyframe_id;
     estimate.keyframe_from_camera = located.keyframe_from_camera();
-    estimate.covariance = located.covariance();
+    estimate.covariance = covariance(located);
     estimate.features = located.track.tried;
     estimate.inliers = located.track.inliers;
     estimate.residual_px = located.track.alignment.residual_px;
@@ -239,6 +240,14 @@ OdometryEstimate Odometry::State::estimate_at(const Keyframe& keyframe) const {
     estimate.odom_from_camera = motion_.odom_from_camera();
     estimate.keyframe_id = keyframe.id;
     return estimate;
+}
+
+/// After the motion has followed it. What stamps and jitter add is not in keyframes' edges: loop closures are
+/// without it, too, and the graph weighs one against the other.
+Matrix6d Odometry::State::covariance(const Located& located) const {
+    const LocalKeyframe* keyframe = keyframes_.find(located.keyframe_id);
+    return located.covariance() +
+           motion_.covariance_of_moment(located, keyframe ? keyframe->velocity : Twist::Zero());
 }
 
 /// A keyframe without an edge. Nothing when the frame has neither texture nor surface.

@@ -70,6 +70,9 @@ struct OdometryOptions {
                                                        ///< alone
     static constexpr double max_prediction_s = 0.2;  ///< the motion of the last frames is not carried on for
                                                      ///< longer
+    static constexpr double stamp_sigma_s = 0.0096;  ///< by which all stamps of a sensor are late: any part
+                                                     ///< of the 1/30 s that a frame takes to be exposed, read
+                                                     ///< out and sent
     static constexpr int max_descriptor_distance = 64;  ///< bits in which matched descriptors may differ
 
     /// Throws std::invalid_argument that names every bad field.

@@ -3,6 +3,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/rounding.hpp"
@@ -141,6 +142,7 @@ PatchMatch match_patches(const PlanarPatches& patches, const PinholeCamera& came
                          double gate_m, double weight) {
     PatchMatch match;
     match.term.at = camera_from_keyframe;
+    std::array<QuadraticTerm, kTiles> tiles;
     const Pose keyframe_from_camera = camera_from_keyframe.inverse();
     double squared = 0;
     for (const DepthSample& sample : samples) {
@@ -159,12 +161,21 @@ PatchMatch match_patches(const PlanarPatches& patches, const PinholeCamera& came
         Twist j;
         j << -normal / sigma, normal.cross(sample.point) / sigma;
         const double w = weight / (1 + r * r / 4);
-        match.term.information.selfadjointView<Eigen::Upper>().rankUpdate(j, w);
-        match.term.gradient += (w * r) * j;
+        const Eigen::Vector2d pixel = camera.project(sample.point);
+        QuadraticTerm& tile = tiles[static_cast<std::size_t>(tile_of(camera, pixel.x(), pixel.y()))];
+        tile.information.selfadjointView<Eigen::Upper>().rankUpdate(j, w);
+        tile.gradient += (w * r) * j;
         squared += r * r;
         ++match.matched;
     }
-    match.term.information.triangularView<Eigen::StrictlyLower>() = match.term.information.transpose();
+    for (QuadraticTerm& tile : tiles) {
+        if (tile.information.trace() == 0) continue;
+        tile.at = camera_from_keyframe;
+        tile.information.triangularView<Eigen::StrictlyLower>() = tile.information.transpose();
+        match.term.information += tile.information;
+        match.term.gradient += tile.gradient;
+        match.tiles.push_back(tile);
+    }
     if (match.matched > 0) match.residual = std::sqrt(squared / match.matched);
     return match;
 }

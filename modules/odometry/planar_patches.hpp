@@ -54,7 +54,9 @@ class PlanarPatches {
 };
 
 struct PatchMatch {
-    QuadraticTerm term;   ///< about the pose it was asked for
+    QuadraticTerm term;  ///< about the pose it was asked for
+    std::vector<QuadraticTerm>
+        tiles;            ///< the same by the samples' tiles (see tile_of()), empty ones left out
     int matched = 0;      ///< samples on the surface
     int visible = 0;      ///< samples that fall on a cell of the surface, matched or not
     double residual = 0;  ///< RMS distance of the matched samples, in sigmas

@@ -50,7 +50,7 @@ std::vector<PointTerm> make_terms(const OdometryOptions& options, const LocalKey
 }
 
 QuadraticTerm guess_term(const Guess& guess) {
-    return {guess.camera_from_keyframe, guess.information, Twist::Zero()};
+    return {guess.camera_from_keyframe, guess.information, Twist::Zero(), true};
 }
 
 bool is_supported(const OdometryOptions& options, const AlignmentResult& result, std::size_t terms) {
@@ -103,10 +103,10 @@ std::vector<QuadraticTerm> geometry_terms(const OdometryOptions& options, const 
                                           const Twist& velocity) {
     std::vector<QuadraticTerm> terms;
     if (options.surface_weight > 0)
-        terms.push_back(match_patches(keyframe.patches, frame.camera->color,
-                                      without_shutter(frame.samples, frame.readout_s * velocity),
-                                      camera_from_keyframe, options.surface_gate_m, options.surface_weight)
-                            .term);
+        terms = match_patches(keyframe.patches, frame.camera->color,
+                              without_shutter(frame.samples, frame.readout_s * velocity),
+                              camera_from_keyframe, options.surface_gate_m, options.surface_weight)
+                    .tiles;
     if (options.plane_points > 0)
         terms.push_back(match_planes(keyframe.regions, frame.regions, camera_from_keyframe,
                                      frame.camera->noise, options.plane_points));
@@ -121,7 +121,7 @@ Twist Guess::velocity_at(const Pose& camera_from_keyframe) const {
 }
 
 Matrix6d Located::covariance() const {
-    return track.alignment.information.ldlt().solve(Matrix6d::Identity());
+    return covariance_of(track.alignment);
 }
 
 QuadraticTerm match_planes(std::span<const PlanarRegion> keyframe_regions,
@@ -246,7 +246,7 @@ std::optional<Track> track_surface(const OdometryOptions& options, const LocalKe
                               without_shutter(frame.samples, frame.readout_s * guess.velocity_at(pose)), pose,
                               gate, options.surface_weight);
         Alignment alignment = make_alignment(options, frame, guess);
-        alignment.quadratics.push_back(match.term);
+        alignment.quadratics.insert(alignment.quadratics.end(), match.tiles.begin(), match.tiles.end());
         alignment.quadratics.push_back(
             match_planes(keyframe.regions, frame.regions, pose, frame.camera->noise, options.plane_points));
         track.alignment = align(alignment, pose);

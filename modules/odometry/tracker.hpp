@@ -56,7 +56,7 @@ struct Located {
     }
     Pose odom_from_camera() const { return orthonormalised(odom_from_keyframe * keyframe_from_camera()); }
     /// Of small motions of keyframe_from_camera in the camera frame, which are those of camera_from_keyframe
-    /// reversed.
+    /// reversed: of what was measured, see covariance_of().
     Matrix6d covariance() const;
 };
 

@@ -169,5 +169,62 @@ TEST(Align, InformationGrowsWithTheNumberOfPoints) {
     EXPECT_LT(little, align(many, some_motion()).information.determinant());
 }
 
+TEST(TileOf, CoversTheImageAndWhatIsBesideIt) {
+    EXPECT_EQ(tile_of(kCamera, 0, 0), 0);
+    EXPECT_EQ(tile_of(kCamera, 639, 479), kTiles - 1);
+    EXPECT_EQ(tile_of(kCamera, 639, 0), kTileColumns - 1);
+    EXPECT_EQ(tile_of(kCamera, -1e9, -1e9), 0);
+    EXPECT_EQ(tile_of(kCamera, 1e9, 1e9), kTiles - 1);
+}
+
+/// Rotation about y of the points' errors and its covariance, over many sets of points. The error of a pixel
+/// is its own, of one pixel, and that of its tile, of `shared` pixels.
+std::pair<double, double> found_and_said(double shared) {
+    std::mt19937_64 random(11);
+    std::normal_distribution<double> noise(0, 1);
+    double found = 0, said = 0;
+    constexpr int kRuns = 200;
+    for (int run = 0; run < kRuns; ++run) {
+        std::vector<PointTerm> terms = seen_points(some_motion(), 300, static_cast<std::uint64_t>(run));
+        std::vector<Eigen::Vector2d> of_tiles(kTiles);
+        for (Eigen::Vector2d& error : of_tiles)
+            error = shared * Eigen::Vector2d(noise(random), noise(random));
+        for (PointTerm& term : terms) {
+            const auto tile = static_cast<std::size_t>(tile_of(kCamera, term.pixel.x(), term.pixel.y()));
+            term.pixel += Eigen::Vector2d(noise(random), noise(random)) + of_tiles[tile];
+        }
+        Alignment alignment;
+        alignment.camera = kCamera;
+        alignment.points = terms;
+        alignment.loss_scale = 100;
+        const AlignmentResult result = align(alignment, some_motion());
+        const Twist error = twist_from_pose(result.camera_from_keyframe * some_motion().inverse());
+        found += error(4) * error(4) / kRuns;
+        said += covariance_of(result)(4, 4) / kRuns;
+    }
+    return {found, said};
+}
+
+TEST(CovarianceOf, HoldsWhereNeighboursErrTogether) {
+    const auto [found, said] = found_and_said(2);
+    EXPECT_GT(said, 0.5 * found);
+    EXPECT_LT(said, 4 * found);
+}
+
+TEST(CovarianceOf, IsNotFarTooWideWhereTheyDoNot) {
+    const auto [found, said] = found_and_said(0);
+    EXPECT_GT(said, found);
+    EXPECT_LT(said, 4 * found);
+}
+
+TEST(CovarianceOf, OfThePriorAloneIsThePriors) {
+    Alignment alignment;
+    alignment.camera = kCamera;
+    alignment.quadratics.push_back({some_motion(), 4 * Matrix6d::Identity(), Twist::Zero(), true});
+    const AlignmentResult result = align(alignment, some_motion());
+    EXPECT_EQ(result.scatter.norm(), 0);
+    EXPECT_LT((covariance_of(result) - Matrix6d::Identity() / 4).norm(), 1e-9);
+}
+
 }  // namespace
 }  // namespace planemap::odometry

@@ -135,5 +135,19 @@ TEST_F(CameraMotionTest, AStartIsAtRestAtTheLastPose) {
     EXPECT_EQ(motion_.seconds_since_pose(1000 * kPeriod), 0);
 }
 
+TEST_F(CameraMotionTest, AStandingCameraHasTheRightMoment) {
+    motion_.start(0);
+    EXPECT_EQ(motion_.covariance_of_moment(located_at(0), Twist::Zero()).norm(), 0);
+}
+
+TEST_F(CameraMotionTest, LateStampsMatterWhereTheMotionChanged) {
+    walk(30);
+    const Located located = located_at(0.29);
+    const double same = motion_.covariance_of_moment(located, motion_.velocity())(0, 0);
+    const double other = motion_.covariance_of_moment(located, Twist::Zero())(0, 0);
+    const double late = OdometryOptions::stamp_sigma_s * motion_.velocity()(0);
+    EXPECT_NEAR(other - same, late * late, 1e-9);
+}
+
 }  // namespace
 }  // namespace planemap::odometry

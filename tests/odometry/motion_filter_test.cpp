@@ -91,5 +91,27 @@ TEST(MotionFilterTest, AfterAGapAPoseIsAsMeasured) {
     EXPECT_LT((pose_from_twist(0.5 * filter.velocity()) * before.inverse() * far).translation().norm(), 1e-9);
 }
 
+TEST(MotionFilterTest, JitterIsWhatWasAdded) {
+    constexpr double kSigma = 2e-3;
+    std::mt19937_64 random(5);
+    std::normal_distribution<double> noise(0, kSigma);
+    Twist velocity;
+    velocity << 0.3, -0.1, 0.2, 0.4, 0.3, 0.1;
+    MotionFilter filter(0.2);
+    filter.start(Pose::Identity());
+    EXPECT_EQ(filter.jitter(), Twist::Zero());
+    for (int i = 1; i < 600; ++i) {
+        Twist error;
+        for (double& value : error) value = noise(random);
+        filter.update(moving(velocity, i * kStep) * pose_from_twist(error), kStep);
+    }
+    const Twist jitter = filter.jitter(), surprise = filter.surprise();
+    for (int i = 3; i < 6; ++i) {
+        EXPECT_GT(jitter(i), 0.3 * kSigma * kSigma) << i;
+        EXPECT_LT(jitter(i), 3 * kSigma * kSigma) << i;
+    }
+    for (int i = 0; i < 6; ++i) EXPECT_LT(jitter(i), surprise(i)) << i;
+}
+
 }  // namespace
 }  // namespace planemap::odometry

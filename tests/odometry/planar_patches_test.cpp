@@ -48,6 +48,14 @@ TEST(PlanarPatches, StepsOfTheMatchLeadToTheTrueMotion) {
     Pose camera_from_keyframe = Pose::Identity();
     for (int i = 0; i < 10; ++i) {
         const PatchMatch match = match_patches(patches, camera.color, samples, camera_from_keyframe, 0.1, 1);
+        QuadraticTerm sum;
+        for (const QuadraticTerm& tile : match.tiles) {
+            sum.information += tile.information;
+            sum.gradient += tile.gradient;
+        }
+        EXPECT_GT(match.tiles.size(), 6u);
+        EXPECT_LT((sum.information - match.term.information).norm(), 1e-9 * sum.information.norm());
+        EXPECT_LT((sum.gradient - match.term.gradient).norm(), 1e-9 * (1 + sum.gradient.norm()));
         camera_from_keyframe =
             pose_from_twist(-match.term.information.ldlt().solve(match.term.gradient)) * camera_from_keyframe;
     }
