@@ -49,7 +49,8 @@ class Odometry::State {
     Keyframe add_keyframe(PreparedFrame& frame, LocalKeyframe local, const Located* located,
                           const FrameMotion& motion);
     OdometryEstimate estimate_at(const Keyframe& keyframe) const;
-    Matrix6d covariance(const Located& located) const;
+    Matrix6d measured_covariance(const Located& located, const Guess& predicted) const;
+    Matrix6d covariance_of_moment(const Located& located) const;
 
     OdometryOptions options_;
     CameraInfo camera_;
@@ -64,9 +65,10 @@ class Odometry::State {
     MotionPriors priors_;
     std::unique_ptr<Method> method_;
     NewsWatch watch_;
-    DepthImage no_depth_;    ///< without a reading, of the colour camera's size
-    int old_colors_ = 0;     ///< frames in a row whose colour was not new
-    OdometryEstimate last_;  ///< of the last frame that was not stale
+    DepthImage no_depth_;                        ///< without a reading, of the colour camera's size
+    int old_colors_ = 0;                         ///< frames in a row whose colour was not new
+    OdometryEstimate last_;                      ///< of the last frame that was not stale
+    Matrix6d last_measured_ = Matrix6d::Zero();  ///< its covariance without what its moment adds
 };
 
 OdometryResult Odometry::State::process(const OdometryFrame& input) {
@@ -172,6 +174,7 @@ OdometryResult Odometry::State::find_again(PreparedFrame& frame) {
         return resumed_ ? result : restart(frame);
     }
     motion_.follow(frame.utime, *located);
+    last_measured_.setZero();
     method_->begin(frame);
     camera_ = *frame.camera;
     const FrameMotion motion{motion_.velocity(), frame.color_offset_s};
@@ -212,6 +215,7 @@ OdometryResult Odometry::State::follow(PreparedFrame& frame, Located& located) {
         readout_.learn(frame.readout_s, located.track.alignment);
     keyframes_.make_current(located.keyframe_id);
     const double elapsed = motion_.seconds_since_pose(frame.utime);
+    last_measured_ = measured_covariance(located, motion_.predict(frame.utime, located.odom_from_keyframe));
     motion_.follow(frame.utime, located);
     method_->follow(frame, located, elapsed);
 
@@ -221,7 +225,7 @@ OdometryResult Odometry::State::follow(PreparedFrame& frame, Located& located) {
     estimate.odom_from_camera = located.odom_from_camera();
     estimate.keyframe_id = located.keyframe_id;
     estimate.keyframe_from_camera = located.keyframe_from_camera();
-    estimate.covariance = covariance(located);
+    estimate.covariance = last_measured_ + covariance_of_moment(located);
     estimate.features = located.track.tried;
     estimate.inliers = located.track.inliers;
     estimate.residual_px = located.track.alignment.residual_px;
@@ -242,17 +246,33 @@ OdometryEstimate Odometry::State::estimate_at(const Keyframe& keyframe) const {
     return estimate;
 }
 
-/// After the motion has followed it. What stamps and jitter add is not in keyframes' edges: loop closures are
-/// without it, too, and the graph weighs one against the other.
-Matrix6d Odometry::State::covariance(const Located& located) const {
+/// Located::covariance(); and where a direction is known by the prediction alone, that starts from a pose
+/// that is no surer, and uncertainty adds up from frame to frame. Before the motion follows it.
+Matrix6d Odometry::State::measured_covariance(const Located& located, const Guess& predicted) const {
+    const Matrix6d covariance = located.covariance();
+    const bool goes_on = last_.status != TrackingStatus::kLost && last_.keyframe_id == located.keyframe_id;
+    if (!located.track.degenerate || !goes_on) return covariance;
+    const auto inverse = [](const Matrix6d& matrix) -> Matrix6d {
+        return matrix.ldlt().solve(Matrix6d::Identity());
+    };
+    const Matrix6d& information = located.track.alignment.information;
+    const Matrix6d from_last = inverse(inverse(predicted.information) + last_measured_);
+    const Matrix6d surer = inverse(information),
+                   unsurer = inverse(information - predicted.information + from_last);
+    return covariance + 0.5 * (unsurer + unsurer.transpose()) - 0.5 * (surer + surer.transpose());
+}
+
+/// After the motion has followed it. It is not in keyframes' edges: loop closures are without it, too, and
+/// the graph weighs one against the other.
+Matrix6d Odometry::State::covariance_of_moment(const Located& located) const {
     const LocalKeyframe* keyframe = keyframes_.find(located.keyframe_id);
-    return located.covariance() +
-           motion_.covariance_of_moment(located, keyframe ? keyframe->velocity : Twist::Zero());
+    return motion_.covariance_of_moment(located, keyframe ? keyframe->velocity : Twist::Zero());
 }
 
 /// A keyframe without an edge. Nothing when the frame has neither texture nor surface.
 std::optional<Keyframe> Odometry::State::begin(PreparedFrame& frame) {
     motion_.start(frame.utime);
+    last_measured_.setZero();
     method_->begin(frame);
     camera_ = *frame.camera;
     const FrameMotion motion{motion_.velocity(), frame.color_offset_s};
@@ -279,7 +299,9 @@ std::optional<Keyframe> Odometry::State::change_keyframe(PreparedFrame& frame, c
         method_->go_on_from(frame, track);
         return std::nullopt;
     }
-    return add_keyframe(frame, std::move(local), &located, motion);
+    Keyframe keyframe = add_keyframe(frame, std::move(local), &located, motion);
+    keyframe.covariance = last_measured_;
+    return keyframe;
 }
 
 /// With an edge from where the frame was located; nullptr: without one, at the last pose, and a chain begins.

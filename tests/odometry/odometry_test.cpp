@@ -206,6 +206,8 @@ TEST_F(Room, ColourMayGoAndComeBack) {
 
 TEST_F(Room, ABareWallIsDegenerateAndItsDistanceIsStillKnown) {
     const std::vector<Plane> wall{{{0, 0, -1}, 2}};
+    OdometryEstimate last;
+    int grown = 0;
     for (int i = 0; i < 10; ++i) {
         Pose pose = Pose::Identity();
         pose.translation().z() = 0.005 * i;
@@ -215,7 +217,15 @@ TEST_F(Room, ABareWallIsDegenerateAndItsDistanceIsStillKnown) {
         ASSERT_EQ(result.estimate.status, TrackingStatus::kDegenerate) << "frame " << i;
         EXPECT_NEAR(result.estimate.odom_from_camera.translation().z(), 0.005 * i, 0.005);
         EXPECT_GT(result.estimate.covariance(0, 0), 10 * result.estimate.covariance(2, 2));
+        // A frame against the same keyframe starts from one that is no surer; a prediction errs by a
+        // centimetre.
+        if (result.estimate.keyframe_id == last.keyframe_id) {
+            EXPECT_GT(result.estimate.covariance(0, 0), last.covariance(0, 0) + 0.9e-4);
+            ++grown;
+        }
+        last = result.estimate;
     }
+    EXPECT_GE(grown, 3);
 }
 
 /// A wall of one shade two metres ahead, as a camera sees it: with noise in its image and its depth.
