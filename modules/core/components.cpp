@@ -24,7 +24,8 @@ int largest_component(const KeyframeTrajectory& trajectory) {
 
 KeyframeTrajectory of_component(const KeyframeTrajectory& trajectory, int component) {
     KeyframeTrajectory part = trajectory;
-    std::erase_if(part.keyframes, [&](const KeyframePose& keyframe) { return keyframe.component != component; });
+    std::erase_if(part.keyframes,
+                  [&](const KeyframePose& keyframe) { return keyframe.component != component; });
     if (!part.keyframes.empty()) part.utime = part.keyframes.back().utime;
     return part;
 }

@@ -32,10 +32,10 @@ struct ComponentTrajectory {
     Trajectory trajectory;
 };
 
-/// Where the frames that have a place were, in the world of their component, in the order of components(): each
-/// at its keyframe, or, where the graph never named that, where it says that the odom frame lies. `frames` are
-/// FramePoses or OdometryEstimates; `keyframes` are what `graph` and those before it said. Without frames
-/// one, empty.
+/// Where the frames that have a place were, in the world of their component, in the order of components():
+/// each at its keyframe, or, where the graph never named that, where it says that the odom frame lies.
+/// `frames` are FramePoses or OdometryEstimates; `keyframes` are what `graph` and those before it said.
+/// Without frames one, empty.
 template <typename Frames>
 std::vector<ComponentTrajectory> place_frames(const Frames& frames, const KeyframePoses& keyframes,
                                               const KeyframeTrajectory& graph) {

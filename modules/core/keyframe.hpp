@@ -38,7 +38,7 @@ struct OdometryEstimate {
     int features = 0;                        ///< features or terms tried
     int inliers = 0;
     double residual_px = 0;  ///< RMS reprojection error of the inliers
-    int chain = -1;  ///< Keyframe::chain of the keyframe; not in the message
+    int chain = -1;          ///< Keyframe::chain of the keyframe; not in the message
     /// How the camera moves, filtered: of its centre, m/s, and its rotation, rad/s, both in the camera frame.
     /// Zero while it is not known: at the first pose and after lost frames. Not in the message.
     Twist velocity = Twist::Zero();

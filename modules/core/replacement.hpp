@@ -19,8 +19,8 @@ struct Replacement {
 };
 
 /// The keyframes that a trajectory names and the next one does not, each with the nearest of those that both
-/// name and that it hung together with (a radian counts as a metre), as they stood in the first. None when they share no keyframe: then the
-/// second is another graph's, and says nothing about the first.
+/// name and that it hung together with (a radian counts as a metre), as they stood in the first. None when
+/// they share no keyframe: then the second is another graph's, and says nothing about the first.
 std::vector<Replacement> replacements(const std::vector<KeyframePose>& before,
                                       const std::vector<KeyframePose>& now);
 

@@ -136,8 +136,8 @@ void PoseGraph::Impl::append_by_odometry(int from, KeyframeNode node, const Pose
     keyframes_.add(std::move(node), orthonormalised(keyframes_.pose(from) * step), from);
 }
 
-/// Keyframes in between never arrived: odometry itself was not lost, so the odom frame is one. `covariance` is
-/// of its last step; of those that are missing each counts as much.
+/// Keyframes in between never arrived: odometry itself was not lost, so the odom frame is one. `covariance`
+/// is of its last step; of those that are missing each counts as much.
 void PoseGraph::Impl::append_after_missing(int from, KeyframeNode node, const Matrix6d& covariance) {
     const KeyframeNode& before = keyframes_[from];
     const Pose step =
@@ -152,8 +152,7 @@ void PoseGraph::Impl::append_after_gap(KeyframeNode node) {
     constexpr double kAnyTime_s = 3600;
     const int last = keyframes_.newest();
     const KeyframeNode& before = keyframes_.back();
-    const double passed_s =
-        static_cast<double>(node.utime) * 1e-6 - static_cast<double>(before.utime) * 1e-6;
+    const double passed_s = static_cast<double>(node.utime) * 1e-6 - static_cast<double>(before.utime) * 1e-6;
     const double seconds = passed_s > 0 ? std::min(passed_s, kAnyTime_s) : kAnyTime_s;
     topology_.add_gap(gap_tie(options_, last, last + 1,
                               before.odom_from_camera.inverse(Eigen::Isometry) * node.odom_from_camera,
@@ -201,8 +200,8 @@ void PoseGraph::Impl::carry_part(int node, const Pose& node_from_newest) {
     schedule_.part_moved();
 }
 
-/// Notes which landmarks the newest keyframe sees, and returns how far they disagree (standard deviations). In
-/// a component without the first keyframe poses say nothing of which they are: the map does.
+/// Notes which landmarks the newest keyframe sees, and returns how far they disagree (standard deviations).
+/// In a component without the first keyframe poses say nothing of which they are: the map does.
 double PoseGraph::Impl::sight(const Keyframe& keyframe) {
     UnionFind<int> parts = topology_.parts();
     const int newest = keyframes_.newest();
@@ -272,8 +271,8 @@ void PoseGraph::Impl::thin_out() {
 }
 
 /// Removes a node and hands what it knows to the nearest one that it is tied to; nothing where there is none.
-/// Not the first keyframe of a component, which is the world's; nor one with a loop closure that the poses do not follow
-/// yet.
+/// Not the first keyframe of a component, which is the world's; nor one with a loop closure that the poses do
+/// not follow yet.
 void PoseGraph::Impl::let_go(int node) {
     if (topology_.parts().stands(node) || topology_.has_unapplied_loop(node)) return;
     const std::optional<Tie> to_keeper = topology_.nearest_trusted(node, keyframes_.poses());

@@ -26,7 +26,8 @@ enum class Optimising {
 
 /// Where a graph is kept; empty: nowhere.
 struct GraphFiles {
-    std::filesystem::path output;   ///< folder that trajectory.txt, and trajectory_2.txt ... of further components, go to
+    std::filesystem::path
+        output;  ///< folder that trajectory.txt, and trajectory_2.txt ... of further components, go to
     std::filesystem::path journal;  ///< keyframes, for a process that is started again
 };
 

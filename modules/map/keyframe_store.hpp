@@ -13,7 +13,8 @@
 
 namespace planemap::map {
 
-/// Whether no keyframe of this id can be: more than 10,000 would lie between it and the newest (-1: none yet).
+/// Whether no keyframe of this id can be: more than 10,000 would lie between it and the newest (-1: none
+/// yet).
 constexpr bool is_far_ahead(int id, int newest_id) {
     constexpr std::int64_t kMostMissed = 10000;
     return newest_id >= 0 && id - std::int64_t{newest_id} > kMostMissed;

@@ -38,8 +38,8 @@ namespace planemap::map {
 /// that is derived from them DerivedMap. This class says when they do what.
 class PlaneMapper {
   public:
-    /// Throws std::invalid_argument for bad options. Mappers that may become one (absorb()) are given the same
-    /// `ids` and `told`.
+    /// Throws std::invalid_argument for bad options. Mappers that may become one (absorb()) are given the
+    /// same `ids` and `told`.
     explicit PlaneMapper(const MapOptions& options = {}, PlaneIds ids = {},
                          std::shared_ptr<ToldUp> told = std::make_shared<ToldUp>());
 
@@ -69,8 +69,9 @@ class PlaneMapper {
     /// it saw goes over to the nearest eight of those, see hand_over().
     void update(const KeyframeTrajectory& trajectory);
 
-    /// Takes over the keyframes of another mapper, of which a trajectory now says that they hang together with
-    /// this one's: the next update(), with that trajectory, makes one map of both. Its planes keep their ids.
+    /// Takes over the keyframes of another mapper, of which a trajectory now says that they hang together
+    /// with this one's: the next update(), with that trajectory, makes one map of both. Its planes keep their
+    /// ids.
     void absorb(PlaneMapper&& other);
 
     /// How the camera is mounted on a robot that stands level on average; says which way is up.

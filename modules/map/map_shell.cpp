@@ -210,8 +210,8 @@ void MapShell::tend_journal() {
 void MapShell::save_poses_and_ids() {
     if (trajectory_.empty()) return;
     journal_->add(messages::channels::kTrajectory, trajectory_);
-    journal_->add(messages::channels::kSurfaces, messages::to_bytes(messages::to_message(
-                                                     maps_.surfaces(), surfaces_seq_, bus_.session())));
+    journal_->add(messages::channels::kSurfaces,
+                  messages::to_bytes(messages::to_message(maps_.surfaces(), surfaces_seq_, bus_.session())));
     trajectory_.clear();
     saved_us_ = messages::now_us();
 }

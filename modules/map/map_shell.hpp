@@ -19,11 +19,12 @@ struct MapShellOptions {
     MapOptions map;
     std::filesystem::path
         start;  ///< plane_map.lcmlog to start from, see PlaneMapper::start_from(); empty: none
-    /// Folder that plane_map.lcmlog, and plane_map_2.lcmlog ... of further components, is written to (beside and renamed), every few seconds and at the end;
-    /// empty: none. A map of an earlier process stays until there are planes to write, and is then kept under
-    /// another name (keep_earlier_map()). The folder is tried at the start: a path that cannot be one is an
-    /// error. A disk that is full is not, nor a write that fails later: it is said in the status and tried
-    /// again every second, at the end finish() throws if the last one failed.
+    /// Folder that plane_map.lcmlog, and plane_map_2.lcmlog ... of further components, is written to (beside
+    /// and renamed), every few seconds and at the end; empty: none. A map of an earlier process stays until
+    /// there are planes to write, and is then kept under another name (keep_earlier_map()). The folder is
+    /// tried at the start: a path that cannot be one is an error. A disk that is full is not, nor a write
+    /// that fails later: it is said in the status and tried again every second, at the end finish() throws if
+    /// the last one failed.
     std::filesystem::path output;
     /// Keyframes, poses and plane ids are kept in this file: a process that is started again goes on with
     /// them, in the same world frame; empty: in none.
@@ -31,8 +32,8 @@ struct MapShellOptions {
     bool needs_planes = false;  ///< finish() throws if the map has none
 };
 
-/// PLANEMAP_KEYFRAME, PLANEMAP_LOOK and PLANEMAP_TRAJECTORY to PLANEMAP_MAP, the map of the component with the
-/// most keyframes, and PLANEMAP_MAP_OTHERS, those of others; PLANEMAP_CAMERA_INFO and
+/// PLANEMAP_KEYFRAME, PLANEMAP_LOOK and PLANEMAP_TRAJECTORY to PLANEMAP_MAP, the map of the component with
+/// the most keyframes, and PLANEMAP_MAP_OTHERS, those of others; PLANEMAP_CAMERA_INFO and
 /// PLANEMAP_ACCELERATION tell which way is up. Throws std::runtime_error naming the file for a map to start
 /// from that cannot be read, and for an output folder that cannot be one.
 class MapShell : public messages::Shell {

@@ -19,13 +19,14 @@ inline constexpr const char* kLook = "PLANEMAP_LOOK";                        ///
 inline constexpr const char* kTrajectory = "PLANEMAP_TRAJECTORY";            ///< planemap.trajectory_t
 inline constexpr const char* kSurfaces = "PLANEMAP_SURFACES";                ///< planemap.surfaces_t
 inline constexpr const char* kMap = "PLANEMAP_MAP";                          ///< planemap.plane_map_t
-inline constexpr const char* kOtherMaps = "PLANEMAP_MAP_OTHERS";  ///< planemap.plane_map_t, of other components
-inline constexpr const char* kOctomapSize = "PLANEMAP_OCTOMAP_SIZE";         ///< planemap.map_size_t
-inline constexpr const char* kPreviewColor = "PLANEMAP_PREVIEW_COLOR";       ///< bot_core.image_t
-inline constexpr const char* kPreviewDepth = "PLANEMAP_PREVIEW_DEPTH";       ///< bot_core.image_t
-inline constexpr const char* kPreviewRegions = "PLANEMAP_PREVIEW_REGIONS";   ///< bot_core.image_t
-inline constexpr const char* kObjectCollection = "OBJECT_COLLECTION";        ///< vs.object_collection_t
-inline constexpr const char* kPointsCollection = "POINTS_COLLECTION";        ///< vs.point3d_list_collection_t
+inline constexpr const char* kOtherMaps =
+    "PLANEMAP_MAP_OTHERS";  ///< planemap.plane_map_t, of other components
+inline constexpr const char* kOctomapSize = "PLANEMAP_OCTOMAP_SIZE";        ///< planemap.map_size_t
+inline constexpr const char* kPreviewColor = "PLANEMAP_PREVIEW_COLOR";      ///< bot_core.image_t
+inline constexpr const char* kPreviewDepth = "PLANEMAP_PREVIEW_DEPTH";      ///< bot_core.image_t
+inline constexpr const char* kPreviewRegions = "PLANEMAP_PREVIEW_REGIONS";  ///< bot_core.image_t
+inline constexpr const char* kObjectCollection = "OBJECT_COLLECTION";       ///< vs.object_collection_t
+inline constexpr const char* kPointsCollection = "POINTS_COLLECTION";       ///< vs.point3d_list_collection_t
 inline constexpr const char* kStatusPrefix =
     "PLANEMAP_STATUS_";  ///< planemap.module_status_t, module in upper case
 

@@ -389,7 +389,8 @@ Keyframe from_message(const keyframe_t& message) {
     require(message.previous_id >= -1 && message.previous_id < message.id, "keyframe.previous_id",
             "is not an earlier keyframe");
     keyframe.previous_id = message.previous_id;
-    require(message.chain >= -1 && message.chain <= message.id, "keyframe.chain", "is not an earlier keyframe");
+    require(message.chain >= -1 && message.chain <= message.id, "keyframe.chain",
+            "is not an earlier keyframe");
     keyframe.chain = message.chain;
     keyframe.odom_from_camera = from_message(message.odom_from_camera, "keyframe.odom_from_camera");
     keyframe.previous_from_camera =

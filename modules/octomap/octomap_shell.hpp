@@ -96,7 +96,7 @@ class OctomapShell : public messages::Shell {
     std::vector<std::uint8_t> trajectory_;        ///< the last one, where the journal does not have it yet
     std::set<int> named_;                         ///< keyframes of the last trajectory
     std::int64_t saved_us_ = 0,
-                 keyframes_of_ = 0;   ///< wall clock of the last save; session of the last keyframe
+                 keyframes_of_ = 0;  ///< wall clock of the last save; session of the last keyframe
     /// Keyframes without a pose in the largest component, by id. Their depth is compressed at once: to do so
     /// with many when their poses come would block.
     std::map<int, std::shared_ptr<const StoredScan>> waiting_;

@@ -25,8 +25,8 @@ class MotionPriors {
     bool hear(const MotionPrior& prior);
 
     /// Moves `track`, of a frame of `utime` against a keyframe of `keyframe_utime`, and tells what it did.
-    /// In the directions that it filled, what the prior knows takes the place of the prediction in the track's
-    /// information: less than that, after a long way since the keyframe.
+    /// In the directions that it filled, what the prior knows takes the place of the prediction in the
+    /// track's information: less than that, after a long way since the keyframe.
     PriorUse apply(Track& track, std::int64_t keyframe_utime, std::int64_t utime,
                    const std::optional<Pose>& body_from_camera);
 

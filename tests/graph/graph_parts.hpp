@@ -26,10 +26,9 @@ struct GraphParts {
             topology.add_odometry(
                 graph::odometry_tie({}, node - 1, node, keyframe.previous_from_camera, keyframe.covariance));
         }
-        keyframes.add(
-            {keyframe.id, keyframe.utime, keyframe.chain, keyframe.odom_from_camera,
-             places::make_view(keyframe, 600)},
-            world_from_camera, node - 1);
+        keyframes.add({keyframe.id, keyframe.utime, keyframe.chain, keyframe.odom_from_camera,
+                       places::make_view(keyframe, 600)},
+                      world_from_camera, node - 1);
     }
 };
 

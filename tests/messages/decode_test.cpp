@@ -113,7 +113,8 @@ TEST(Decode, AnEarlierTypesMessageIsTakenAndADamagedOneIsRefused) {
     map.inferred.clear();
     const std::vector<std::uint8_t> today = encoded(to_message(map, 7));
     ASSERT_EQ(fingerprints<plane_map_t>().size(), 3u);
-    for (const auto& [number, missing] : {std::pair(1, 8), std::pair(2, 16)}) {  // n_inferred, component; session, too
+    for (const auto& [number, missing] :
+         {std::pair(1, 8), std::pair(2, 16)}) {  // n_inferred, component; session, too
         std::vector<std::uint8_t> earlier = today;
         earlier.resize(earlier.size() - static_cast<std::size_t>(missing));
         const std::uint64_t fingerprint = fingerprints<plane_map_t>().at(static_cast<std::size_t>(number));

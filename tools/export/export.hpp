@@ -21,9 +21,10 @@ struct Exported {
     std::vector<std::string> remarks;  ///< what the user should know, a line each
 };
 
-/// Writes what follows from a map, and from those of further components beside it, into the folder, all together, in place of an earlier export's. `about` is
-/// run_info(). Throws std::runtime_error with one line naming file and reason: no map can be read, the
-/// folder holds others' results, or a file cannot be written; what is in the folder is then untouched.
+/// Writes what follows from a map, and from those of further components beside it, into the folder, all
+/// together, in place of an earlier export's. `about` is run_info(). Throws std::runtime_error with one line
+/// naming file and reason: no map can be read, the folder holds others' results, or a file cannot be written;
+/// what is in the folder is then untouched.
 Exported export_map(const ExportOptions& options, const nlohmann::ordered_json& about);
 
 }  // namespace planemap

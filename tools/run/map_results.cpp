@@ -20,12 +20,12 @@ Result text_result(const std::string& name, std::function<std::string()> bytes) 
 
 std::vector<Result> essential_results(const MapSource& source, std::size_t number) {
     const std::shared_ptr<const PlaneMap> map = source.map;
-    std::vector<Result> results{
-        {component_file("plane_map.lcmlog", number), [map](const auto& file) { map::write_plane_map(file, *map); }}};
+    std::vector<Result> results{{component_file("plane_map.lcmlog", number),
+                                 [map](const auto& file) { map::write_plane_map(file, *map); }}};
     if (source.trajectory) {
-        results.push_back({component_file("trajectory.txt", number), [trajectory = source.trajectory](const auto& file) {
-                               write_trajectory(file, trajectory());
-                           }});
+        results.push_back(
+            {component_file("trajectory.txt", number),
+             [trajectory = source.trajectory](const auto& file) { write_trajectory(file, trajectory()); }});
     }
     results.push_back(text_result(component_file("planes.json", number), [map, sightings = source.sightings] {
         return exports::planes_json(*map, sightings());
@@ -62,9 +62,9 @@ std::vector<Result> report_results(const nlohmann::ordered_json& report) {
 }
 
 std::vector<std::string> map_result_names() {
-    std::vector<std::string> names{"report.json", "report.md",  "planes.ply",         "planes.obj",
-                                   "planes.mtl",  "planes.glb", "floor_plan.geojson", "overhead.svg",
-                                   "map.svg"};
+    std::vector<std::string> names{"report.json",        "report.md",    "planes.ply",
+                                   "planes.obj",         "planes.mtl",   "planes.glb",
+                                   "floor_plan.geojson", "overhead.svg", "map.svg"};
     for (std::size_t number = 1; number <= kMostComponentFiles; ++number)
         for (const char* name : {"plane_map.lcmlog", "trajectory.txt", "planes.json"})
             names.push_back(component_file(name, number));

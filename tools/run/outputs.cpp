@@ -130,7 +130,8 @@ Json depth_off(pipeline::Pipeline& pipeline) {
             {"noise_m", camera->noise.sigma(kRange_m)}};
 }
 
-/// What hangs together and what does not, the largest first: all other figures, and the pictures, are of that.
+/// What hangs together and what does not, the largest first: all other figures, and the pictures, are of
+/// that.
 Json components_of(pipeline::Pipeline& pipeline) {
     std::map<int, std::size_t> keyframes;
     for (const KeyframePose& keyframe : pipeline.keyframes().keyframes) ++keyframes[keyframe.component];
@@ -139,7 +140,9 @@ Json components_of(pipeline::Pipeline& pipeline) {
     Json components = Json::array();
     for (std::size_t i = 0; i < std::min(maps.size(), trajectories.size()); ++i) {
         const ComponentTrajectory& part = trajectories[i];
-        const auto time = [](const StampedPose& pose) { return static_cast<double>(pose.utime / 1000) / 1000; };
+        const auto time = [](const StampedPose& pose) {
+            return static_cast<double>(pose.utime / 1000) / 1000;
+        };
         Json& component = components.emplace_back();
         component["component"] = part.component;
         component["keyframes"] = keyframes[part.component];

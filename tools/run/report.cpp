@@ -57,11 +57,12 @@ void add_tracking(const Json& report, std::string& out) {
            " loop closures, " + count("planes") + " planes.\n\n";
     if (report.contains("components") && report["components"].size() > 1) {
         const Json& components = report["components"];
-        out += std::to_string(components.size()) +
-               " components do not hang together: tracking was lost, or time or the sensor started again, and "
-               "no loop closure tied them. Where one lies in another is not known. What follows, and the "
-               "pictures, are of the largest.\n\n| component | keyframes | frames | planes | from s | to s "
-               "| trajectory |\n| --- | --- | --- | --- | --- | --- | --- |\n";
+        out +=
+            std::to_string(components.size()) +
+            " components do not hang together: tracking was lost, or time or the sensor started again, and "
+            "no loop closure tied them. Where one lies in another is not known. What follows, and the "
+            "pictures, are of the largest.\n\n| component | keyframes | frames | planes | from s | to s "
+            "| trajectory |\n| --- | --- | --- | --- | --- | --- | --- |\n";
         for (const Json& component : components) {
             for (const char* key : {"component", "keyframes", "frames", "planes", "from_s", "to_s"})
                 out += "| " + (component.at(key).is_null() ? "-" : component.at(key).dump()) + " ";
@@ -74,7 +75,8 @@ void add_tracking(const Json& report, std::string& out) {
         out += "In " + count("degenerate") + " frames a direction is known by the prediction alone.\n\n";
     if (report.value("stale", 0) > 0) {
         out += "In " + count("stale") +
-               " frames nothing new said where the camera was: they have the pose before them, or none where the camera may have "
+               " frames nothing new said where the camera was: they have the pose before them, or none where "
+               "the camera may have "
                "gone far.\n\n";
     }
     if (report.contains("up")) {
