@@ -43,7 +43,7 @@ OptionList options_of(OdometryOptions& options) {
              "Of the camera: bounds how far a pose may be turned from where the motion so far leads",
              kExpert);
     list.add("min_tracked_share", options.min_tracked_share, kShare,
-             "A new keyframe begins when a smaller share of the keyframe's points is tracked");
+             "A new keyframe begins when a smaller share of the keyframe's points is tracked", kExpert);
     list.add("max_translation_m", options.max_translation_m, {0.01, 10},
              "A new keyframe begins when the camera is further from the last one");
     list.add("max_rotation_rad", options.max_rotation_rad, {0.01, 3},

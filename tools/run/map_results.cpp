@@ -62,10 +62,10 @@ std::vector<Result> report_results(const nlohmann::ordered_json& report) {
 }
 
 std::vector<std::string> map_result_names() {
-    std::vector<std::string> names{"report.json",        "report.md",    "planes.ply",
-                                   "planes.obj",         "planes.mtl",   "planes.glb",
-                                   "floor_plan.geojson", "overhead.svg", "map.svg"};
-    for (std::size_t number = 1; number <= kMostComponentFiles; ++number)
+    std::vector<std::string> names{"plane_map.lcmlog", "trajectory.txt",     "planes.json",  "report.json",
+                                   "report.md",        "planes.ply",         "planes.obj",   "planes.mtl",
+                                   "planes.glb",       "floor_plan.geojson", "overhead.svg", "map.svg"};
+    for (std::size_t number = 2; number <= kMostComponentFiles; ++number)
         for (const char* name : {"plane_map.lcmlog", "trajectory.txt", "planes.json"})
             names.push_back(component_file(name, number));
     return names;
