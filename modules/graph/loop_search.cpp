@@ -11,6 +11,8 @@ namespace planemap::graph {
 
 namespace {
 
+constexpr double kRivalScore = 0.25;  // of the likeness of what was found, that a rival has at least
+
 /// The nodes of the highest scores of at least `least`, none beside another.
 std::vector<int> peaks(const std::vector<double>& scores, double least, int count) {
     std::vector<int> order;
@@ -88,6 +90,7 @@ std::optional<places::Verification> LoopSearch::verified(int node, const Keyfram
     const std::optional<places::Verification> found =
         closure(node, keyframes, topology, drifts, verification_options(options_));
     if (!found || has_rival(node, keyframes, topology, drifts, *found)) return std::nullopt;
+    if (is_seen_elsewhere(node, keyframes, topology, *found)) return std::nullopt;
     return found;
 }
 
@@ -110,7 +113,6 @@ std::optional<places::Verification> LoopSearch::closure(int node, const Keyframe
 /// newest far, or odometry does not know where it is.
 bool LoopSearch::has_rival(int node, const Keyframes& keyframes, const Topology& topology,
                            const std::vector<Drift>& drifts, const places::Verification& found) const {
-    constexpr double kScore = 0.25;  // of the found node's, that a rival has at least
     const int newest = keyframes.newest();
     const bool is_open = drifts[at(node)].metres > options_.max_place_drift_m;
     if (!is_open && jump(keyframes.between(node, newest), found.a_from_b) < options_.surroundings_from_m)
@@ -118,7 +120,7 @@ bool LoopSearch::has_rival(int node, const Keyframes& keyframes, const Topology&
     const Pose world_from_newest = keyframes.pose(node) * found.a_from_b;
     std::vector<double> scores =
         appearance_scores(keyframes.back().view, topology.within_steps(newest, options_.min_separation));
-    const double least = std::max(options_.min_appearance, kScore * scores[at(node)]);
+    const double least = std::max(options_.min_appearance, kRivalScore * scores[at(node)]);
     for (int i = 0; i <= newest; ++i) {
         if (scores[at(i)] < least) continue;
         const Pose i_from_newest = keyframes.pose(i).inverse(Eigen::Isometry) * world_from_newest;
@@ -127,10 +129,43 @@ bool LoopSearch::has_rival(int node, const Keyframes& keyframes, const Topology&
     }
     const places::VerificationOptions options = rival_options(verification_options(options_), found);
     const std::vector<Drift> of_node = topology.drifts_from(node);
+    UnionFind<int> parts = topology.parts();
     for (const int other : peaks(scores, least, options_.appearance_candidates)) {
         const auto rival = closure(other, keyframes, topology, drifts, options);
         if (!rival) continue;
+        // A component that nobody could tie to an older one is no witness of where its places are: it may be
+        // an alias of what the older one saw.
+        const int part = parts.find(other);
+        if (part < parts.find(node) && part != parts.find(newest)) return true;
         if (!fits_odometry(world_from_newest, of_node[at(other)], keyframes.pose(other) * rival->a_from_b))
+            return true;
+    }
+    return false;
+}
+
+/// Where a loop closure would join two components: whether another node of the newest one's component sees
+/// what the node sees and puts that elsewhere. The other way round has_rival() asks.
+bool LoopSearch::is_seen_elsewhere(int node, const Keyframes& keyframes, const Topology& topology,
+                                   const places::Verification& found) const {
+    UnionFind<int> parts = topology.parts();
+    const int newest = keyframes.newest();
+    if (parts.find(node) == parts.find(newest)) return false;
+    const places::KeyframeView& view = keyframes[node].view;
+    const Pose world_from_node = keyframes.pose(newest) * found.a_from_b.inverse(Eigen::Isometry);
+    std::vector<double> scores = appearance_scores(view, std::vector<bool>(place_of_.size(), false));
+    const double least = std::max(options_.min_appearance, kRivalScore * scores[at(newest)]);
+    for (int i = 0; i <= newest; ++i) {
+        const Pose i_from_node = keyframes.pose(i).inverse(Eigen::Isometry) * world_from_node;
+        if (i == newest || parts.find(i) != parts.find(newest) ||
+            looks_at_the_same(keyframes[i].view, view, i_from_node))
+            scores[at(i)] = 0;
+    }
+    const places::VerificationOptions options = rival_options(verification_options(options_), found);
+    for (const int other : peaks(scores, least, options_.appearance_candidates)) {
+        const auto seed = static_cast<std::uint64_t>(other) << 32 | static_cast<std::uint64_t>(node);
+        const places::Verification rival = verify(keyframes[other].view, view, options, seed);
+        if (rival.verdict == places::Verdict::kAccepted &&
+            places::are_apart(keyframes.pose(other) * rival.a_from_b, world_from_node))
             return true;
     }
     return false;

@@ -50,6 +50,8 @@ class LoopSearch {
                                                 const places::VerificationOptions& options) const;
     bool has_rival(int node, const Keyframes& keyframes, const Topology& topology,
                    const std::vector<Drift>& drifts, const places::Verification& found) const;
+    bool is_seen_elsewhere(int node, const Keyframes& keyframes, const Topology& topology,
+                           const places::Verification& found) const;
     bool fits_odometry(const Pose& expected, const Drift& drift, const Pose& node_from_newest) const;
     bool fits_surroundings(int node, const Keyframes& keyframes, const Topology& topology,
                            const std::vector<Drift>& drifts, const Pose& node_from_newest) const;

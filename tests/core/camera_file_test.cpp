@@ -152,7 +152,7 @@ TEST(CameraFile, AbsurdValuesAreRefusedWithWhatIsAllowed) {
         {R"("noise": {"base_m": "NaN"})", "noise.base_m is \"NaN\""},
     };
     for (const auto& [more, expected] : cases) {
-        EXPECT_THAT(test::error_of([&] { read(with(more)); }), HasSubstr(expected)) << more;
+        EXPECT_THAT(test::error_of([&text = more] { read(with(text)); }), HasSubstr(expected)) << more;
     }
     const std::string camera = test::error_of([] {
         read(R"({"depth_camera": {"width": 640, "height": 480, "fx": 1e9, "fy": 1e-3, "cx": 1e5, "cy": -1e5},

@@ -101,8 +101,9 @@ TEST(ShapeTest, SeparateParts) {
 
 TEST(ShapeTest, OddSizes) {
     for (const auto& [width, height] : std::vector<std::pair<int, int>>{{641, 479}, {1280, 720}, {333, 77}}) {
-        expect_close_fit(
-            {kSlanted, [=](int u, int v) { return u > width / 4 && v < height * 3 / 4; }, width, height});
+        expect_close_fit({kSlanted,
+                          [w = width, h = height](int u, int v) { return u > w / 4 && v < h * 3 / 4; }, width,
+                          height});
     }
 }
 
@@ -269,8 +270,8 @@ TEST(ShapeTest, LargerBlocksAreWhatMostOfTheirPixelsAre) {
          std::vector<std::array<int, 3>>{{320, 60, 2}, {480, 60, 3}, {640, 64, 4}, {1280, 64, 8}}) {
         // Patches of two blocks, jittered, with dust.
         Image<std::uint16_t> labels(width, height);
-        const auto patch_label = [&](int u, int v) {
-            return (u / (2 * block) * 7 + v / (2 * block) * 3) % 4;
+        const auto patch_label = [size = 2 * block](int u, int v) {
+            return (u / size * 7 + v / size * 3) % 4;
         };
         for (int v = 0; v < height; ++v) {
             for (int u = 0; u < width; ++u) {
