@@ -271,15 +271,16 @@ Matrix6d Odometry::State::covariance_of_moment(const Located& located) const {
 
 /// A keyframe without an edge. Nothing when the frame has neither texture nor surface.
 std::optional<Keyframe> Odometry::State::begin(PreparedFrame& frame) {
+    camera_ = *frame.camera;
+    const FrameMotion at_rest{Twist::Zero(), frame.color_offset_s};
+    LocalKeyframe local = make_local_keyframe(options_, frame, at_rest);
+    // Where nothing can begin, the last pose stays as old as it is.
+    if (!can_be_tracked_against(local, 2 * options_.min_inliers)) return std::nullopt;
     motion_.start(frame.utime);
     last_measured_.setZero();
     method_->begin(frame);
-    camera_ = *frame.camera;
-    const FrameMotion motion{motion_.velocity(), frame.color_offset_s};
-    LocalKeyframe local = make_local_keyframe(options_, frame, motion);
-    if (!can_be_tracked_against(local, 2 * options_.min_inliers)) return std::nullopt;
     keyframes_.clear();
-    return add_keyframe(frame, std::move(local), nullptr, motion);
+    return add_keyframe(frame, std::move(local), nullptr, at_rest);
 }
 
 /// Goes over to another keyframe that is known, else to a new one of this frame, where that is of use.

@@ -280,6 +280,19 @@ TEST_F(Room, BlackFramesAreLostAndTheViewIsFoundAgain) {
     }
 }
 
+TEST_F(Room, WhereNothingCanBeginTheLastPoseGetsNoYounger) {
+    const std::vector<Plane> wall{{{0, 0, -1}, 2}};
+    const RenderedFrame bare = render_room(camera_, Pose::Identity(), false, wall);
+    for (int i = 0; i < 10; ++i) feed(bare, (i + 1) * kPeriod);
+    const RenderedFrame black{GrayImage(320, 240, 0), DepthImage(320, 240, 0)};
+    for (int i = 10; i < 27; ++i)  // longer than it waits before it begins anew
+        EXPECT_EQ(feed(black, (i + 1) * kPeriod).estimate.status, TrackingStatus::kLost);
+    // Half a second later a bare wall says nothing of how far the camera went along it.
+    const OdometryResult result = feed(bare, 28 * kPeriod);
+    ASSERT_TRUE(result.keyframe);
+    EXPECT_EQ(result.keyframe->previous_id, -1);
+}
+
 TEST_F(Room, NothingToSeeIsNoKeyframe) {
     const RenderedFrame black{GrayImage(320, 240, 0), DepthImage(320, 240, 0)};
     for (int i = 0; i < 40; ++i) {
