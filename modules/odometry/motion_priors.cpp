@@ -68,6 +68,7 @@ void fill(const Directions& directions, const Twist& off, const Matrix6d& prior_
         orthonormalised(pose_from_twist(Twist(from_weak * step)) * pose.camera_from_keyframe);
     const Eigen::MatrixXd prediction = from_weak.transpose() * track.guess_information * from_weak;
     pose.information += to_weak.transpose() * (prior - prediction) * to_weak;
+    track.by_prior = true;
 }
 
 }  // namespace

@@ -247,11 +247,12 @@ OdometryEstimate Odometry::State::estimate_at(const Keyframe& keyframe) const {
 }
 
 /// Located::covariance(); and where a direction is known by the prediction alone, that starts from a pose
-/// that is no surer, and uncertainty adds up from frame to frame. Before the motion follows it.
+/// that is no surer, and uncertainty adds up from frame to frame; not where a motion prior says it, whose own
+/// uncertainty grows with the way. Before the motion follows it.
 Matrix6d Odometry::State::measured_covariance(const Located& located, const Guess& predicted) const {
-    const Matrix6d covariance = located.covariance();
+    Matrix6d covariance = located.covariance();
     const bool goes_on = last_.status != TrackingStatus::kLost && last_.keyframe_id == located.keyframe_id;
-    if (!located.track.degenerate || !goes_on) return covariance;
+    if (!located.track.degenerate || located.track.by_prior || !goes_on) return covariance;
     const auto inverse = [](const Matrix6d& matrix) -> Matrix6d {
         return matrix.ldlt().solve(Matrix6d::Identity());
     };

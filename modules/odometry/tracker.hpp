@@ -40,6 +40,7 @@ struct Track {
     bool by_features = false;
     bool degenerate = false;                        ///< a direction is known from the guess only
     Matrix6d guess_information = Matrix6d::Zero();  ///< the guess's part of alignment.information
+    bool by_prior = false;  ///< a motion prior took the guess's place where a direction is not seen
 };
 
 /// Where a frame is, and how it is known.

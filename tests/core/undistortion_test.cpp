@@ -132,8 +132,9 @@ TEST(Undistortion, MapsAreOpenCVs) {
                     EXPECT_FALSE(column > -0.49 && row > -0.49 && column < 159.49 && row < 119.49);
                     continue;
                 }
-                EXPECT_LT(std::abs(column - float((columns(u, v) - 1) % 200)), 0.501);
-                EXPECT_LT(std::abs(row - float((columns(u, v) - 1) / 200)), 0.501);
+                const int at = columns(u, v) - 1, from_row = at / 200;
+                EXPECT_LT(std::abs(column - float(at % 200)), 0.501);
+                EXPECT_LT(std::abs(row - float(from_row)), 0.501);
             }
         }
     }

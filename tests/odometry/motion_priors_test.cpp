@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -160,6 +161,8 @@ TEST_F(Slide, AlongABlankWallIsFollowedByThePrior) {
         EXPECT_TRUE(odometry.hear({kStart + kFrame_us * i, local_from_body(at({kStep_m * i, 0, 0}))}));
         last = frame(odometry, i);
         EXPECT_EQ(last.prior, i > 0 ? PriorUse::kFilled : PriorUse::kNone) << i;
+        if (i == 0) continue;
+        EXPECT_EQ(Eigen::LLT<Matrix6d>(last.estimate.covariance).info(), Eigen::Success) << i;
     }
     EXPECT_EQ(last.estimate.status, TrackingStatus::kDegenerate) << "the camera does not see it";
     const Eigen::Vector3d moved = last.estimate.odom_from_camera.translation();
