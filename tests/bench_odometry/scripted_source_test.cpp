@@ -128,7 +128,8 @@ TEST(ScriptedSource, CoversDimsAndSmears) {
         EXPECT_NEAR(color_of(all[1])(2, 1).r, 10, 2);
         EXPECT_EQ(all[1].depth(0, 0), 1001);
         EXPECT_NEAR(color_of(all[2])(2, 1).r, 30, 3);
-        EXPECT_NEAR(color_of(all[2])(kWidth / 2, 1).r, 30 * 4 / 9, 3);
+        const int middle = kWidth / 2;
+        EXPECT_NEAR(color_of(all[2])(middle, 1).r, 30 * 4 / 9.0, 3);
         EXPECT_NEAR(color_of(all[2])(kWidth - 2, 1).r, 0, 2);
     }
 }
