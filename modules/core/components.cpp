@@ -12,6 +12,7 @@ std::vector<int> components(const KeyframeTrajectory& trajectory) {
     std::map<int, int> keyframes;
     for (const KeyframePose& keyframe : trajectory.keyframes) ++keyframes[keyframe.component];
     std::vector<int> order;
+    order.reserve(keyframes.size());
     for (const auto& [component, count] : keyframes) order.push_back(component);
     std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return keyframes[a] > keyframes[b]; });
     return order;

@@ -87,7 +87,7 @@ std::vector<double> LoopSearch::place_scores(const Keyframes& keyframes, const s
 std::optional<places::Verification> LoopSearch::verified(int node, const Keyframes& keyframes,
                                                          const Topology& topology,
                                                          const std::vector<Drift>& drifts) const {
-    const std::optional<places::Verification> found =
+    std::optional<places::Verification> found =
         closure(node, keyframes, topology, drifts, verification_options(options_));
     if (!found || has_rival(node, keyframes, topology, drifts, *found)) return std::nullopt;
     if (is_seen_elsewhere(node, keyframes, topology, *found)) return std::nullopt;

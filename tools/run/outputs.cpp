@@ -141,7 +141,8 @@ Json components_of(pipeline::Pipeline& pipeline) {
     for (std::size_t i = 0; i < std::min(maps.size(), trajectories.size()); ++i) {
         const ComponentTrajectory& part = trajectories[i];
         const auto time = [](const StampedPose& pose) {
-            return static_cast<double>(pose.utime / 1000) / 1000;
+            const std::int64_t ms = pose.utime / 1000;
+            return static_cast<double>(ms) / 1000;
         };
         Json& component = components.emplace_back();
         component["component"] = part.component;
@@ -221,7 +222,7 @@ std::vector<Result> further_results(const Input& input, pipeline::Pipeline& pipe
 std::string why_poorer(const std::filesystem::path& folder, const Input& input,
                        pipeline::Pipeline& pipeline) {
     const RunWorth run{input.frames(), tracked_frames(pipeline), !input.is_at_end()};
-    const std::string why = why_not_replace(run, worth_in(folder));
+    std::string why = why_not_replace(run, worth_in(folder));
     if (!why.empty() || !pipeline.map().mapper().map().planes.empty()) return why;
     return map::may_hold_planes(folder / "plane_map.lcmlog") ? "no planes in its map" : "";
 }
