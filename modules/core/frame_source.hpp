@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/acceleration.hpp"
@@ -69,6 +70,28 @@ class FrameSource {
     virtual std::optional<double> progress() const { return std::nullopt; }
     /// The source below all that was put around it.
     virtual const FrameSource& origin() const { return *this; }
+};
+
+/// A source put around another one: what it does not do otherwise is the other's.
+class SourceAround : public FrameSource {
+  public:
+    const CameraInfo& camera() const override { return source_->camera(); }
+    std::optional<std::size_t> size() const override { return source_->size(); }
+    ReadResult next(SensorFrame& frame) override { return source_->next(frame); }
+    bool is_live() const override { return source_->is_live(); }
+    std::vector<std::string> notes() const override { return source_->notes(); }
+    std::vector<std::string> complaints() const override { return source_->complaints(); }
+    std::string end() override { return source_->end(); }
+    std::optional<double> progress() const override { return source_->progress(); }
+    const FrameSource& origin() const override { return source_->origin(); }
+
+  protected:
+    explicit SourceAround(std::unique_ptr<FrameSource> source) : source_(std::move(source)) {}
+    FrameSource& source() { return *source_; }
+    const FrameSource& source() const { return *source_; }
+
+  private:
+    std::unique_ptr<FrameSource> source_;
 };
 
 }  // namespace planemap

@@ -31,9 +31,9 @@ void ComponentMaps::add(const Keyframe& keyframe) {
 
 std::optional<int> ComponentMaps::component_of(int keyframe_id) const {
     const auto named =
-        std::lower_bound(named_.begin(), named_.end(), keyframe_id,
+        std::lower_bound(last_.keyframes.begin(), last_.keyframes.end(), keyframe_id,
                          [](const KeyframePose& pose, int wanted) { return pose.id < wanted; });
-    if (named == named_.end() || named->id != keyframe_id) return std::nullopt;
+    if (named == last_.keyframes.end() || named->id != keyframe_id) return std::nullopt;
     return named->component;
 }
 
@@ -78,7 +78,7 @@ void ComponentMaps::update(const KeyframeTrajectory& trajectory) {
     }
     join(trajectory);
     order_ = components(trajectory);
-    named_ = trajectory.keyframes;
+    last_ = trajectory;
     std::erase_if(waiting_, [&](const auto& entry) {
         const auto& [id, came] = entry;
         const std::optional<int> component = component_of(id);
@@ -87,7 +87,9 @@ void ComponentMaps::update(const KeyframeTrajectory& trajectory) {
         for (const Look& look : came.looks) map_of(*component).add(look);
         return true;
     });
-    for (const int component : order_) map_of(component).update(of_component(trajectory, component));
+    for (const int component : order_)
+        if (const auto map = maps_.find(component); map != maps_.end())
+            map->second.update(of_component(trajectory, component));
 }
 
 /// Maps of components that are part of another one now go over to that.
@@ -105,7 +107,9 @@ void ComponentMaps::join(const KeyframeTrajectory& trajectory) {
 }
 
 PlaneMapper& ComponentMaps::map_of(int component) {
-    return maps_.try_emplace(component, options_, ids_, told_).first->second;
+    const auto [map, is_new] = maps_.try_emplace(component, options_, ids_, told_);
+    if (is_new) map->second.update(of_component(last_, component));
+    return map->second;
 }
 
 void ComponentMaps::restore_ids(const Surfaces& surfaces) {
@@ -118,7 +122,9 @@ void ComponentMaps::settle() {
 
 std::vector<const PlaneMapper*> ComponentMaps::all() const {
     std::vector<const PlaneMapper*> all;
-    for (const int component : order_) all.push_back(&maps_.at(component));
+    for (const int component : order_)
+        if (const auto map = maps_.find(component); map != maps_.end()) all.push_back(&map->second);
+    if (all.empty()) all.push_back(&maps_.begin()->second);
     return all;
 }
 

@@ -47,7 +47,7 @@ class ComponentMaps {
 
     /// The map of the component with the most keyframes.
     const PlaneMapper& largest() const { return *all().front(); }
-    /// Those of all components, in the order of components(); at least one.
+    /// Those of all components that keyframes came of, in the order of components(); at least one.
     std::vector<const PlaneMapper*> all() const;
 
     Surfaces surfaces() const;
@@ -64,6 +64,7 @@ class ComponentMaps {
 
     void wait(const Keyframe& keyframe);
     void join(const KeyframeTrajectory& trajectory);
+    /// Made when the first keyframe comes: a trajectory may name what never does.
     PlaneMapper& map_of(int component);
     /// Of a keyframe that the last trajectory named.
     std::optional<int> component_of(int keyframe_id) const;
@@ -73,7 +74,7 @@ class ComponentMaps {
     std::shared_ptr<ToldUp> told_ = std::make_shared<ToldUp>();
     std::map<int, PlaneMapper> maps_;  ///< by component; at least one
     std::vector<int> order_;           ///< of the components that the last trajectory named
-    std::vector<KeyframePose> named_;  ///< by it
+    KeyframeTrajectory last_;          ///< that one
     struct Waiting {
         Keyframe keyframe;  ///< without its features
         std::vector<Look> looks;

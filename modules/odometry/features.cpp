@@ -2,12 +2,13 @@
 #include "odometry/features.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
+
+#include "places/matching.hpp"
 
 namespace planemap::odometry {
 namespace {
@@ -137,14 +138,6 @@ Eigen::Vector3d regularised(const Plane& plane, const Eigen::Vector3d& point) {
     return point * (-plane.d / along);
 }
 
-int bit_difference(const Descriptor& a, const Descriptor& b) {
-    std::array<std::uint64_t, 4> x, y;
-    std::memcpy(x.data(), a.data(), sizeof x);
-    std::memcpy(y.data(), b.data(), sizeof y);
-    return std::popcount(x[0] ^ y[0]) + std::popcount(x[1] ^ y[1]) + std::popcount(x[2] ^ y[2]) +
-           std::popcount(x[3] ^ y[3]);
-}
-
 std::vector<std::pair<int, int>> match_descriptors(std::span<const Feature> a, std::span<const Feature> b,
                                                    int max_distance) {
     constexpr int kFar = 257;
@@ -153,7 +146,7 @@ std::vector<std::pair<int, int>> match_descriptors(std::span<const Feature> a, s
     for (std::size_t i = 0; i < a.size(); ++i) {
         int best = kFar, second = kFar;
         for (std::size_t j = 0; j < b.size(); ++j) {
-            const int bits = bit_difference(a[i].descriptor, b[j].descriptor);
+            const int bits = places::hamming_distance(a[i].descriptor, b[j].descriptor);
             if (bits < distance_of_b[j]) {
                 distance_of_b[j] = bits;
                 best_of_b[j] = static_cast<int>(i);

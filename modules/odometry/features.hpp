@@ -44,9 +44,6 @@ int region_of(std::span<const PlanarRegion> regions, const Eigen::Vector3d& poin
 /// its pixel. The point itself when the ray grazes the plane.
 Eigen::Vector3d regularised(const Plane& plane, const Eigen::Vector3d& point);
 
-/// Bits in which two descriptors differ.
-int bit_difference(const Descriptor& a, const Descriptor& b);
-
 /// Mutual nearest neighbours within max_distance bits, whose second-best is clearly worse: (index in a, in
 /// b).
 std::vector<std::pair<int, int>> match_descriptors(std::span<const Feature> a, std::span<const Feature> b,

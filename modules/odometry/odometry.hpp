@@ -75,7 +75,10 @@ class Odometry {
     /// max_lost_frames. Call it before the first frame.
     void resume(std::span<const Keyframe> keyframes);
     /// Ids up to this one are another odometry's: the next frame begins a chain of its own beyond them.
+    /// Precondition: at most kMostIdAfter.
     void start_after(int id);
+    /// No odometry comes that far; there is room for a thousand million keyframes more.
+    static constexpr int kMostIdAfter = 1000000000;
 
     /// What wheels or an IMU say, of the time before the frames that it is of use for; in order. False: it
     /// was left out (see MotionPriors). A frame whose own images say all goes on as without.

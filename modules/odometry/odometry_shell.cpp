@@ -294,10 +294,10 @@ void OdometryShell::remember_chain(const Keyframe& keyframe) {
 }
 
 void OdometryShell::on_trajectory(const messages::RawMessage& message) {
-    const KeyframeTrajectory trajectory =
-        messages::from_message(messages::decode<trajectory_t>(message.bytes));
-    if (const int newest = trajectory.keyframes.empty() ? -1 : trajectory.keyframes.back().id;
-        newest > newest_id_) {
+    const auto received = messages::decode<trajectory_t>(message.bytes);
+    if (const int newest = received.ids.empty() ? -1 : received.ids.back(); newest > newest_id_) {
+        if (newest > Odometry::kMostIdAfter)
+            throw messages::MessageError("trajectory.ids: " + std::to_string(newest) + " is no keyframe's");
         odometry_.start_after(newest);
         newest_id_ = newest;
         status_.remark(
@@ -306,6 +306,7 @@ void OdometryShell::on_trajectory(const messages::RawMessage& message) {
             "ids begin after those, and what it tracks is a component of its own");
     }
     if ((body_.is_known() && apart_.empty()) || !first_keyframe_) return;
+    const KeyframeTrajectory trajectory = messages::from_message(received);
     const auto named = [&](const Start& start) {
         const auto found = std::find_if(
             trajectory.keyframes.begin(), trajectory.keyframes.end(),

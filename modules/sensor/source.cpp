@@ -60,31 +60,27 @@ Source open_folder(const std::string& input, const SourceOptions& options) {
 }
 
 /// A part of a source that can only be read in order.
-class SelectedFrames : public FrameSource {
+class SelectedFrames : public SourceAround {
   public:
-    SelectedFrames(std::unique_ptr<FrameSource> source, const FrameRange& range)
-        : source_(std::move(source)), range_(range) {
-        if (const auto size = source_->size()) frames_within(range_, *size);  // throws if there are none
+    SelectedFrames(std::unique_ptr<FrameSource> all, const FrameRange& range)
+        : SourceAround(std::move(all)), range_(range) {
+        if (const auto size = source().size()) frames_within(range_, *size);  // throws if there are none
     }
 
-    const CameraInfo& camera() const override { return source_->camera(); }
     std::optional<std::size_t> size() const override {
-        const auto size = source_->size();
+        const auto size = source().size();
         if (!size) return std::nullopt;
         const auto [from, to] = frames_within(range_, *size);
         return to - from;
     }
-    bool is_live() const override { return source_->is_live(); }
-    std::vector<std::string> notes() const override { return source_->notes(); }
-    std::string end() override { return source_->end(); }
-    const FrameSource& origin() const override { return source_->origin(); }
+    std::optional<double> progress() const override { return std::nullopt; }  // the source's is of all frames
     ReadResult next(SensorFrame& frame) override {
         for (;;) {
             if (range_.to && next_ >= *range_.to) {
                 frame = {};
                 return {.status = ReadResult::Status::kEnd, .message = {}};
             }
-            ReadResult result = source_->next(frame);
+            ReadResult result = source().next(frame);
             using Status = ReadResult::Status;
             if (result.status == Status::kEnd || result.status == Status::kNothing) return result;
             if (next_++ >= range_.from) return result;
@@ -92,27 +88,23 @@ class SelectedFrames : public FrameSource {
     }
 
   private:
-    std::unique_ptr<FrameSource> source_;
     FrameRange range_;
     std::size_t next_ = 0;  ///< number of the next frame
 };
 
 /// A live camera for a while.
-class TimedFrames : public FrameSource {
+class TimedFrames : public SourceAround {
   public:
-    TimedFrames(std::unique_ptr<FrameSource> source, double duration_s)
-        : source_(std::move(source)),
+    TimedFrames(std::unique_ptr<FrameSource> camera, double duration_s)
+        : SourceAround(std::move(camera)),
           end_(Clock::now() +
                std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(duration_s))) {}
 
-    const CameraInfo& camera() const override { return source_->camera(); }
     std::optional<std::size_t> size() const override { return std::nullopt; }
+    std::optional<double> progress() const override { return std::nullopt; }
     bool is_live() const override { return true; }
-    std::vector<std::string> notes() const override { return source_->notes(); }
-    std::string end() override { return source_->end(); }
-    const FrameSource& origin() const override { return source_->origin(); }
     ReadResult next(SensorFrame& frame) override {
-        if (Clock::now() < end_) return source_->next(frame);
+        if (Clock::now() < end_) return source().next(frame);
         frame = {};
         return {.status = ReadResult::Status::kEnd, .message = {}};
     }
@@ -120,7 +112,6 @@ class TimedFrames : public FrameSource {
   private:
     using Clock = std::chrono::steady_clock;
 
-    std::unique_ptr<FrameSource> source_;
     Clock::time_point end_;
 };
 

@@ -103,6 +103,19 @@ TEST_F(Components, TheLargestIsTheOneWithTheMostKeyframes) {
     EXPECT_EQ(maps_.largest().map().component, 5);
 }
 
+TEST_F(Components, WhatATrajectoryNamesAndNeverCameMakesNoMap) {
+    KeyframeTrajectory trajectory;
+    for (int id = 0; id < 1000; ++id) trajectory.keyframes.push_back({id, 1000, Pose::Identity(), id});
+    maps_.update(trajectory);
+    EXPECT_EQ(maps_.all().size(), 1u);
+    maps_.add(keyframe(7, {kWall}, Pose::Identity()));
+    ASSERT_EQ(maps_.all().size(), 2u);
+    EXPECT_EQ(maps_.all()[1]->map().component, 7);
+    EXPECT_EQ(maps_.waiting(), 0u);
+    maps_.settle();
+    EXPECT_EQ(ids(*maps_.all()[1]).size(), 1u);
+}
+
 TEST_F(Components, LooksGoWithTheirKeyframe) {
     come();
     Look look;

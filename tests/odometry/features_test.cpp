@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "places/matching.hpp"
 #include "room.hpp"
 
 namespace planemap::odometry {
@@ -60,14 +61,14 @@ TEST(RegionOf, NearestPlaneWithinNoiseAndOutline) {
     EXPECT_EQ(region_of({}, {0, 0, 2}, 0.01), -1);
 }
 
-TEST(Descriptors, BitDifferenceCountsBits) {
+TEST(Descriptors, TheirDistanceCountsBits) {
     Descriptor a{}, b{};
-    EXPECT_EQ(bit_difference(a, b), 0);
+    EXPECT_EQ(places::hamming_distance(a, b), 0);
     b.fill(0xff);
-    EXPECT_EQ(bit_difference(a, b), 256);
+    EXPECT_EQ(places::hamming_distance(a, b), 256);
     b.fill(0);
     b[31] = 0x05;
-    EXPECT_EQ(bit_difference(a, b), 2);
+    EXPECT_EQ(places::hamming_distance(a, b), 2);
 }
 
 TEST(Descriptors, AFrameMatchesItself) {
@@ -78,8 +79,8 @@ TEST(Descriptors, AFrameMatchesItself) {
     const auto matches = match_descriptors(features, features, 64);
     EXPECT_GT(matches.size(), features.size() / 2);
     for (const auto& [i, j] : matches)
-        EXPECT_EQ(bit_difference(features[static_cast<std::size_t>(i)].descriptor,
-                                 features[static_cast<std::size_t>(j)].descriptor),
+        EXPECT_EQ(places::hamming_distance(features[static_cast<std::size_t>(i)].descriptor,
+                                           features[static_cast<std::size_t>(j)].descriptor),
                   0);
     EXPECT_TRUE(match_descriptors({}, features, 64).empty());
     EXPECT_TRUE(match_descriptors(features, {}, 64).empty());

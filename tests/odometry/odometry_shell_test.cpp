@@ -6,6 +6,7 @@
 
 #include <bot_core/pose_t.hpp>
 #include <chrono>
+#include <limits>
 #include <thread>
 
 #include "shell_fixture.hpp"
@@ -216,6 +217,21 @@ TEST_F(OdometryShellTest, WithoutAJournalItsIdsBeginAfterThoseThatTheGraphKnows)
         EXPECT_EQ(keyframes->back().previous_id, -1);
         EXPECT_EQ(keyframes->back().chain, keyframes->back().id);
     }
+}
+
+TEST_F(OdometryShellTest, ATrajectoryOfAbsurdIdsMovesNothing) {
+    OdometryShell shell(bus_, std::make_shared<messages::FrameDecoder>(bus_), {});
+    const auto keyframes = collect<keyframe_t>(messages::channels::kKeyframe);
+    publish_camera();
+    KeyframeTrajectory trajectory;
+    trajectory.keyframes = {{std::numeric_limits<int>::max(), 77, Pose::Identity()}};
+    bus_.publish(messages::channels::kTrajectory, messages::to_message(trajectory, 0));
+    bus_.drain();
+    bus_.publish(messages::channels::kFrame, frame(1000000));
+    publish_regions(1000000);
+    bus_.drain();
+    ASSERT_EQ(keyframes->size(), 1u);
+    EXPECT_EQ(keyframes->front().id, 0);
 }
 
 TEST_F(OdometryShellTest, SaysThatTheSensorStartedAgainAndWhatItsPosesAreThen) {

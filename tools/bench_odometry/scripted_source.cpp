@@ -67,8 +67,8 @@ void disturb(const Shown& shown, const PinholeCamera& camera, SensorFrame& frame
 
 }  // namespace
 
-ScriptedSource::ScriptedSource(std::unique_ptr<FrameSource> source, Script script)
-    : source_(std::move(source)), script_(std::move(script)) {
+ScriptedSource::ScriptedSource(std::unique_ptr<FrameSource> images, Script script)
+    : SourceAround(std::move(images)), script_(std::move(script)) {
     for (std::size_t i = 0; i < script_.size(); ++i) {
         for (const std::size_t index : {script_[i].at, script_[i].color, script_[i].depth}) {
             if (last_use_.size() <= index) last_use_.resize(index + 1, 0);
@@ -81,7 +81,7 @@ ScriptedSource::ScriptedSource(std::unique_ptr<FrameSource> source, Script scrip
 const SensorFrame* ScriptedSource::find(std::size_t index) {
     while (read_ <= index) {
         SensorFrame frame;
-        const ReadResult result = source_->next(frame);
+        const ReadResult result = source().next(frame);
         if (result.status == ReadResult::Status::kEnd) return nullptr;
         if (result.status != ReadResult::Status::kFrame) continue;
         if (last_use_[read_] >= next_) kept_[read_] = std::move(frame);
@@ -114,7 +114,7 @@ ReadResult ScriptedSource::next(SensorFrame& frame) {
         const std::int64_t now = at.color_utime != 0 ? at.color_utime : at.utime;
         frame.color_utime = (shown.keeps_color_stamp ? color.color_utime : now) + shown.later_us;
     }
-    disturb(shown, source_->camera().color, frame);
+    disturb(shown, source().camera().color, frame);
     moments_.push_back(at.utime);
     ++next_;
     forget();

@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
-#include "messages/image_codec.hpp"
+#include "sensor/changed_color.hpp"
 
 namespace planemap::convert {
 
@@ -42,47 +43,31 @@ RgbImage shrunk(const RgbImage& image, int factor) {
     return out;
 }
 
-class ShrunkColor : public FrameSource {
+class ShrunkColor : public SourceAround {
   public:
-    ShrunkColor(std::unique_ptr<FrameSource> source, int factor)
-        : source_(std::move(source)), factor_(factor), camera_(source_->camera()) {
+    ShrunkColor(std::unique_ptr<FrameSource> full, int factor)
+        : SourceAround(std::move(full)), factor_(factor), camera_(source().camera()) {
         camera_.color = shrunk(camera_.color, factor);
         camera_.validate();
     }
 
     const CameraInfo& camera() const override { return camera_; }
-    std::optional<std::size_t> size() const override { return source_->size(); }
-    std::optional<double> progress() const override { return source_->progress(); }
-    std::vector<std::string> complaints() const override { return source_->complaints(); }
     std::vector<std::string> notes() const override {
-        std::vector<std::string> notes = source_->notes();
+        std::vector<std::string> notes = source().notes();
         notes.push_back("colour is made " + std::to_string(factor_) + " times smaller, to " +
                         std::to_string(camera_.color.width) + "x" + std::to_string(camera_.color.height) +
                         ": its pixels are too fine for this depth");
         return notes;
     }
     ReadResult next(SensorFrame& frame) override {
-        ReadResult result = source_->next(frame);
+        ReadResult result = source().next(frame);
         if (result.status != ReadResult::Status::kFrame) return result;
-        try {
-            if (!frame.color_jpeg.empty()) {
-                const PinholeCamera& full = source_->camera().color;
-                frame.color = messages::decode_jpeg_colors(frame.color_jpeg, full.width, full.height);
-            }
-            if (!frame.color.empty()) frame.color = shrunk(frame.color, factor_);
-        } catch (const messages::MessageError& error) {
-            frame.color = {};
-            frame.color_utime = 0;
-            result.color_left_out = true;
-            result.reason = error.what();
-            result.message = "a colour image: " + result.reason + "; the frame is used without colour";
-        }
-        frame.color_jpeg.clear();
+        sensor::change_color(frame, result, source().camera().color,
+                             [&](RgbImage& color) { color = shrunk(color, factor_); });
         return result;
     }
 
   private:
-    std::unique_ptr<FrameSource> source_;
     int factor_;
     CameraInfo camera_;
 };

@@ -78,14 +78,20 @@ std::int64_t tracked_frames(const pipeline::Pipeline& pipeline) {
 
 namespace {
 
-/// Of the component with this number in the order of size, from 0.
-MapSource map_source(pipeline::Pipeline& pipeline, std::size_t component = 0) {
-    const map::PlaneMapper& mapper = *pipeline.map().maps().all().at(component);
+/// Empty for a component that no frame is of.
+Trajectory trajectory_of(const pipeline::Pipeline& pipeline, int component) {
+    for (ComponentTrajectory& part : pipeline.trajectories())
+        if (part.component == component) return std::move(part.trajectory);
+    return {};
+}
+
+/// Of a component.
+MapSource map_source(pipeline::Pipeline& pipeline, const map::PlaneMapper& mapper) {
     // As the stored map says it: what is exported from that later is the same to the last digit.
     auto stored =
         std::make_shared<const PlaneMap>(messages::from_message(messages::to_message(mapper.map(), 0)));
     return {std::move(stored),
-            [&pipeline, component] { return pipeline.trajectories().at(component).trajectory; },
+            [&pipeline, component = mapper.map().component] { return trajectory_of(pipeline, component); },
             [&mapper] { return mapper.sightings(); }};
 }
 
@@ -93,10 +99,12 @@ MapSource map_source(pipeline::Pipeline& pipeline, std::size_t component = 0) {
 
 std::vector<Result> essential_results(pipeline::Pipeline& pipeline) {
     std::vector<Result> results;
-    const std::size_t components = std::min(pipeline.map().maps().all().size(), kMostComponentFiles);
-    for (std::size_t i = 0; i < components; ++i)
-        for (Result& result : essential_results(map_source(pipeline, i), i + 1))
+    std::size_t number = 0;
+    for (const map::PlaneMapper* mapper : pipeline.map().maps().all()) {
+        if (++number > kMostComponentFiles) break;
+        for (Result& result : essential_results(map_source(pipeline, *mapper), number))
             results.push_back(std::move(result));
+    }
     return results;
 }
 
@@ -135,24 +143,24 @@ Json depth_off(pipeline::Pipeline& pipeline) {
 Json components_of(pipeline::Pipeline& pipeline) {
     std::map<int, std::size_t> keyframes;
     for (const KeyframePose& keyframe : pipeline.keyframes().keyframes) ++keyframes[keyframe.component];
-    const std::vector<const map::PlaneMapper*> maps = pipeline.map().maps().all();
-    const std::vector<ComponentTrajectory> trajectories = pipeline.trajectories();
+    const auto time = [](const StampedPose& pose) {
+        const std::int64_t ms = pose.utime / 1000;
+        return static_cast<double>(ms) / 1000;
+    };
     Json components = Json::array();
-    for (std::size_t i = 0; i < std::min(maps.size(), trajectories.size()); ++i) {
-        const ComponentTrajectory& part = trajectories[i];
-        const auto time = [](const StampedPose& pose) {
-            const std::int64_t ms = pose.utime / 1000;
-            return static_cast<double>(ms) / 1000;
-        };
+    for (const map::PlaneMapper* mapper : pipeline.map().maps().all()) {
+        const int id = mapper->map().component;
+        const Trajectory trajectory = trajectory_of(pipeline, id);
+        const std::size_t number = components.size() + 1;
         Json& component = components.emplace_back();
-        component["component"] = part.component;
-        component["keyframes"] = keyframes[part.component];
-        component["frames"] = part.trajectory.size();
-        component["planes"] = maps[i]->map().planes.size();
-        component["from_s"] = part.trajectory.empty() ? Json() : Json(time(part.trajectory.front()));
-        component["to_s"] = part.trajectory.empty() ? Json() : Json(time(part.trajectory.back()));
+        component["component"] = id;
+        component["keyframes"] = keyframes[id];
+        component["frames"] = trajectory.size();
+        component["planes"] = mapper->map().planes.size();
+        component["from_s"] = trajectory.empty() ? Json() : Json(time(trajectory.front()));
+        component["to_s"] = trajectory.empty() ? Json() : Json(time(trajectory.back()));
         component["trajectory"] =
-            i < kMostComponentFiles ? Json(component_file("trajectory.txt", i + 1)) : Json();
+            number <= kMostComponentFiles ? Json(component_file("trajectory.txt", number)) : Json();
     }
     return components;
 }
@@ -210,7 +218,8 @@ Json report_of(const std::string& input_name, const Input& input, pipeline::Pipe
 std::vector<Result> further_results(const Input& input, pipeline::Pipeline& pipeline, const Json& report) {
     std::vector<Result> results = report_results(report);
     for (Result& truth : input.truth_results()) results.push_back(std::move(truth));
-    for (Result& drawn : drawn_results(map_source(pipeline))) results.push_back(std::move(drawn));
+    for (Result& drawn : drawn_results(map_source(pipeline, pipeline.map().mapper())))
+        results.push_back(std::move(drawn));
     if (pipeline.octomap() != nullptr)
         results.push_back({"octomap.bt", [&pipeline](const auto& file) {
                                write_file(file, pipeline.octomap()->builder().bt());
