@@ -136,8 +136,12 @@ int tile_of(const PinholeCamera& camera, double u, double v) {
     return part(v, camera.height, kTileRows) * kTileColumns + part(u, camera.width, kTileColumns);
 }
 
+Matrix6d assumed_covariance(const AlignmentResult& result) {
+    return result.information.ldlt().solve(Matrix6d::Identity());
+}
+
 Matrix6d covariance_of(const AlignmentResult& result) {
-    const Matrix6d assumed = result.information.ldlt().solve(Matrix6d::Identity());
+    const Matrix6d assumed = assumed_covariance(result);
     const Matrix6d found = assumed * result.scatter * assumed;
     return assumed + 0.5 * (found + found.transpose());
 }

@@ -66,7 +66,10 @@ struct AlignmentResult {
     bool converged = false;  ///< the last step was small and all values are finite
 };
 
-/// What the residuals say of x beside their assumed sizes: the inverse information, and, added to it, the
+/// Of x, if errors are independent and as large as assumed: the inverse information.
+Matrix6d assumed_covariance(const AlignmentResult& result);
+
+/// What the residuals say of x beside their assumed sizes: the assumed covariance, and, added to it, the
 /// cluster-robust (sandwich) covariance (White 1980, Liang and Zeger 1986) of errors that hang together.
 Matrix6d covariance_of(const AlignmentResult& result);
 

@@ -302,7 +302,9 @@ std::optional<Keyframe> Odometry::State::change_keyframe(PreparedFrame& frame, c
         return std::nullopt;
     }
     Keyframe keyframe = add_keyframe(frame, std::move(local), &located, motion);
-    keyframe.covariance = last_measured_;
+    // Where all is seen as loop closures have it, so that edges and closures weigh alike in the graph.
+    keyframe.covariance =
+        located.track.degenerate ? last_measured_ : assumed_covariance(located.track.alignment);
     return keyframe;
 }
 
