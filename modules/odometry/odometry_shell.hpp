@@ -1,20 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <chrono>
-#include <deque>
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <span>
 
 #include "messages/convert.hpp"
 #include "messages/frame_decoder.hpp"
-#include "messages/journal.hpp"
 #include "messages/process.hpp"
 #include "odometry/body_frame.hpp"
+#include "odometry/keyframe_outbox.hpp"
 #include "odometry/looks.hpp"
+#include "odometry/odom_frames.hpp"
 #include "odometry/odometry.hpp"
+#include "odometry/region_pairing.hpp"
 #include "odometry/registration_check.hpp"
 
 namespace planemap::odometry {
@@ -23,13 +22,10 @@ namespace planemap::odometry {
 /// and PLANEMAP_LOOK.
 /// POSE_BODY begins when it is known how the body lies (BodyFrame): by camera.json, else by the up of
 /// PLANEMAP_MAP, which is asked until then.
-/// A frame waits for its regions until a later one's come, kMaxWaiting frames wait, or it has waited for
-/// kMaxWait; then it goes on without. After kMaxMissing of these in a row (no segmentation on the bus) frames
-/// do not wait, until regions come again.
+/// How frames wait for their regions: RegionPairing.
 ///
-/// With a journal, which a path names, a process that is started again knows the keyframes that it made:
-/// their ids are not given again, and it is lost until it finds a place that they saw. The keyframes of the
-/// last seconds are sent again when a module that lives on them was started again.
+/// With a journal, which a path names, a process that is started again knows the keyframes that it made
+/// (KeyframeOutbox): their ids are not given again, and it is lost until it finds a place that they saw.
 class OdometryShell : public messages::Shell {
   public:
     OdometryShell(messages::Bus& bus, std::shared_ptr<messages::FrameDecoder> decoder,
@@ -62,73 +58,33 @@ class OdometryShell : public messages::Shell {
     void finish() override;
 
   private:
-    using Clock = std::chrono::steady_clock;
-    /// More than the segmentation has in its queue and at work: it drops what comes beyond that.
-    static constexpr std::size_t kMaxWaiting = 8;
-    static constexpr std::chrono::milliseconds kMaxWait{500};
-    static constexpr std::chrono::seconds kSendAgain{5};  ///< keyframes of so long
-    static constexpr int kMaxMissing = 10;  ///< frames in a row without regions, then nothing waits
-
-    struct Waiting {
-        std::shared_ptr<const messages::Frame> frame;
-        std::optional<messages::FrameRegions> regions;
-        Clock::time_point since = Clock::now();
-    };
-    void on_frame(std::shared_ptr<const messages::Frame> frame);
-    void on_regions(const messages::RawMessage& message);
     void on_trajectory(const messages::RawMessage& message);
     void on_map(const messages::RawMessage& message);
     void publish_body(OdometryEstimate estimate, const CameraInfo& camera);
-    void process_ready(std::size_t max_waiting);
-    void process_front();
-    void process(const Waiting& input);
+    void process(const FrameWithRegions& input);
+    OdometryResult track(const OdometryFrame& frame);
+    void add_colour(const messages::Frame& frame, OdometryFrame& in);
     void resume();
-    void tend_journal();
     void count(const News& news);
     void count(PriorUse prior);
     void hear_priors(const std::string& channel);
     void on_prior(const messages::RawMessage& message);
-    void remember_chain(const Keyframe& keyframe);
-    void publish(const Keyframe& keyframe);
     void publish_look(const OdometryResult& result, std::span<const PlanarRegion> regions);
-    void on_status(const messages::RawMessage& message);
-    void send_again();
 
     messages::Bus& bus_;
     std::shared_ptr<messages::FrameDecoder> decoder_;
     Odometry odometry_;
     RegistrationCheck registration_;
     messages::ModuleStatus status_{"odometry"};
-    std::deque<Waiting> waiting_;
-    std::deque<messages::FrameRegions>
-        early_regions_;  ///< of frames that have not come yet; at most kMaxWaiting
-    /// The first keyframe of an odom frame, by which a trajectory says how that lies in the world.
-    struct Start {
-        int id;
-        std::int64_t utime;
-        Pose odom_from_camera;
-    };
+    RegionPairing pairing_;
+    KeyframeOutbox outbox_;
     BodyFrame body_;
+    OdomFrames frames_;
     Looks looks_;
-    std::optional<Start> first_keyframe_;
-    int first_chain_ = -1;                 ///< of that one
-    int newest_id_ = -1;                   ///< of the keyframes so far, ours and those of before
-    std::map<int, Start> apart_;           ///< by chain: those of which it is not known how they lie
-    std::map<int, Pose> first_from_odom_;  ///< by chain: those of which it is; the newest
-    bool is_silent_ = false;               ///< POSE_BODY is, since that is not known of the present one
-    std::optional<Pose> odom_from_world_;
+    int newest_id_ = -1;      ///< of the keyframes so far, ours and those of before
+    bool is_silent_ = false;  ///< POSE_BODY is, since how the present odom frame lies is not known
     std::optional<std::int64_t> frames_told_utime_;  ///< frame with which the body's frames were told last
-    std::optional<std::int64_t> handled_utime_;      ///< of the last frame that was handled
-    int missing_ = 0;                                ///< frames in a row that waited in vain
-    bool heard_ = false;                             ///< a message came since the last poll()
-    std::int32_t odometry_seq_ = 0, keyframe_seq_ = 0, look_seq_ = 0;
-    std::unique_ptr<messages::Journal> journal_;  ///< null without
-    struct Sent {
-        Clock::time_point at;
-        std::vector<std::uint8_t> bytes;
-    };
-    std::deque<Sent> sent_;                         ///< the last keyframes
-    std::map<std::string, std::int64_t> sessions_;  ///< of the modules that live on them
+    std::int32_t odometry_seq_ = 0, look_seq_ = 0;
 };
 
 }  // namespace planemap::odometry
