@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <planemap/keyframe_t.hpp>
 #include <planemap/look_t.hpp>
 #include <planemap/map_size_t.hpp>
 #include <planemap/trajectory_t.hpp>
@@ -23,10 +24,6 @@ namespace {
 constexpr std::int64_t kPublishPeriodUs = 5000000;
 constexpr std::chrono::milliseconds kPatience{250};  // of a stop
 
-// Recent frames. In one process a keyframe comes right after its frame; between processes the odometry may
-// have a dozen frames before it, and at a fifth of the camera's rate those are two seconds of frames.
-constexpr std::size_t kFramesInHandler = 16, kFramesInBackground = 128;
-constexpr std::size_t kRecentBytes = 64 << 20;  // of frames beyond the sixteen
 // Keyframes without a pose: as many as the graph's own queue holds.
 constexpr std::size_t kMaxWaiting = 256;
 // Keyframes that the graph let go, which looks may still be tracked against.
@@ -40,16 +37,17 @@ OctomapShell::OctomapShell(messages::Bus& bus, std::shared_ptr<messages::FrameDe
       decoder_(std::move(decoder)),
       options_(options),
       builder_(std::make_unique<OctomapBuilder>(options)),
+      recent_(building == Building::kInBackground ? RecentFrames::kInBackground : RecentFrames::kInHandler),
       resolution_m_(options.resolution_m),
       max_keyframes_(static_cast<std::size_t>(options.max_keyframes)),
       output_(files.output) {
     if (building == Building::kInBackground) worker_ = std::make_unique<OctomapWorker>(*builder_);
     if (!files.journal.empty()) {
-        journal_ = std::make_unique<messages::Journal>(files.journal);
+        journal_ = std::make_unique<ScanJournal>(bus, files.journal);
         resume();
     }
     decoder_->subscribe(
-        status_, 8, [this](const auto& frame) { on_frame(frame); }, false);
+        status_, 8, [this](const auto& frame) { recent_.add(frame); }, false);
     bus_.subscribe(messages::channels::kKeyframe,
                    status_.guard([this](const messages::RawMessage& m) { on_keyframe(m); }), 256);
     bus_.subscribe(messages::channels::kLook,
@@ -64,16 +62,6 @@ OctomapShell::~OctomapShell() {
     // To free millions of nodes one by one takes longer than a stop may: the end of the process does not wait
     // for it.
     std::thread([left = std::move(builder_)] {}).detach();
-}
-
-void OctomapShell::on_frame(const std::shared_ptr<const messages::Frame>& frame) {
-    recent_.push_back({frame, frame->image_bytes()});
-    recent_bytes_ += recent_.back().bytes;
-    const std::size_t most = worker_ ? kFramesInBackground : kFramesInHandler;
-    while (recent_.size() > most || (recent_.size() > kFramesInHandler && recent_bytes_ > kRecentBytes)) {
-        recent_bytes_ -= recent_.front().bytes;
-        recent_.pop_front();
-    }
 }
 
 void OctomapShell::drop(const char* reason, std::int64_t count) {
@@ -91,21 +79,14 @@ void OctomapShell::on_keyframe(const messages::RawMessage& message) {
     watch_.came(received.id, received.previous_id, received.utime);
     if (received.id > newest_id_) looks_since_ = 0;
     newest_id_ = std::max(newest_id_, received.id);
-    const std::shared_ptr<const messages::Frame> frame = recent(received.utime);
+    const std::shared_ptr<const messages::Frame> frame = recent_.at(received.utime);
     if (!frame) return drop("keyframes whose frame was gone");
-    if (journal_) keep(*frame, message.bytes);
+    if (journal_) journal_->keep(*frame, message.bytes);
     waiting_[received.id] = scan_of(*frame);
     if (waiting_.size() > kMaxWaiting) {
         waiting_.erase(waiting_.begin());
         drop("keyframes that never got a pose");
     }
-}
-
-/// The frame of a time, if it came and is not gone.
-std::shared_ptr<const messages::Frame> OctomapShell::recent(std::int64_t utime) const {
-    const auto found = std::find_if(recent_.begin(), recent_.end(),
-                                    [&](const Recent& r) { return r.frame->utime() == utime; });
-    return found == recent_.end() ? nullptr : found->frame;
 }
 
 std::shared_ptr<const StoredScan> OctomapShell::scan_of(const messages::Frame& frame) {
@@ -118,7 +99,7 @@ void OctomapShell::on_look(const messages::RawMessage& message) {
     const look_t received = messages::decode<look_t>(message.bytes);
     const Look look = messages::from_message(received);
     if (look.number == 0 || received.session != keyframes_of_) return;
-    const std::shared_ptr<const messages::Frame> frame = recent(look.utime);
+    const std::shared_ptr<const messages::Frame> frame = recent_.at(look.utime);
     if (!frame) return drop("looks whose frame was gone");
     looks_.push_back(
         {{newest_id_, ++looks_since_}, {look.keyframe_id, look.keyframe_from_camera}, scan_of(*frame)});
@@ -144,7 +125,7 @@ void OctomapShell::on_trajectory(const messages::RawMessage& message) {
     const trajectory_t received = messages::decode<trajectory_t>(message.bytes);
     const KeyframeTrajectory trajectory = messages::from_message(received);
     if (!trajectory_guard_.admits(received.session, received.seq, std::nullopt, message.bytes)) return;
-    if (journal_) trajectory_.assign(message.bytes.begin(), message.bytes.end());
+    if (journal_) journal_->hear(message.bytes);
     take(trajectory);
 }
 
@@ -193,98 +174,20 @@ void OctomapShell::start_over() {
 
 /// Takes keyframes, their depth and their poses from the process before.
 void OctomapShell::resume() {
-    for (const std::string& complaint : journal_->complaints()) spdlog::warn("octomap: {}", complaint);
-    messages::Bus bus("memq://");
-    messages::FrameDecoder decoder(bus);
-    std::shared_ptr<const messages::Frame> frame;
-    std::vector<std::uint8_t> trajectory, newest;
-    journal_->replay([&](const messages::LogEvent& event) {
-        try {
-            if (event.channel == messages::channels::kTrajectory) {
-                trajectory = event.bytes;
-            } else if (event.channel == messages::channels::kCameraInfo) {
-                bus.publish_bytes(event.channel, event.bytes);
-                bus.drain();
-            } else if (event.channel == messages::channels::kFrame) {
-                frame = decoder.decode({event.channel, event.bytes, event.utime});
-            } else if (frame) {
-                const auto received = messages::decode<keyframe_t>(event.bytes);
-                if (received.utime != frame->utime()) return;
-                watch_.came(received.id, received.previous_id, received.utime);
-                waiting_[received.id] = std::make_shared<StoredScan>(frame->depth(), frame->camera());
-                newest = event.bytes;
-            }
-        } catch (const std::exception& error) {
-            bus_.complaints().add(journal_->file().string() + ": a keyframe left out: " + error.what());
-        }
-    });
-    if (!newest.empty()) {
-        const auto last = messages::decode<keyframe_t>(newest);
-        keyframe_guard_.resume(last.session, last.seq, last.utime, newest);
+    ScanJournal::Earlier earlier = journal_->earlier();
+    waiting_ = std::move(earlier.scans);
+    for (const ScanJournal::Came& keyframe : earlier.keyframes)
+        watch_.came(keyframe.id, keyframe.previous_id, keyframe.utime);
+    if (!earlier.newest.empty()) {
+        const auto last = messages::decode<keyframe_t>(earlier.newest);
+        keyframe_guard_.resume(last.session, last.seq, last.utime, earlier.newest);
         keyframes_of_ = last.session;
     }
-    if (trajectory.empty()) return;
-    const auto last = messages::decode<trajectory_t>(trajectory);
-    trajectory_guard_.resume(last.session, last.seq, std::nullopt, trajectory);
+    if (earlier.trajectory.empty()) return;
+    const auto last = messages::decode<trajectory_t>(earlier.trajectory);
+    trajectory_guard_.resume(last.session, last.seq, std::nullopt, earlier.trajectory);
     spdlog::info("octomap: goes on with {} keyframes of {}", waiting_.size(), journal_->file().string());
     take(messages::from_message(last));
-}
-
-/// A keyframe's depth, and the keyframe.
-void OctomapShell::keep(const messages::Frame& frame, std::span<const std::uint8_t> bytes) {
-    if (!journal_camera_ || !(*journal_camera_ == frame.camera())) {
-        journal_camera_ = frame.camera();
-        journal_->add(
-            messages::channels::kCameraInfo,
-            messages::to_bytes(messages::to_message(frame.camera(), frame.utime(), 0, bus_.session())));
-    }
-    bot_core::images_t images;
-    images.utime = frame.utime();
-    images.n_images = 1;
-    images.image_types.push_back(bot_core::images_t::DEPTH_MM_ZIPPED);
-    images.images.push_back(
-        messages::depth_image_message(frame.depth(), frame.utime(), messages::DepthEncoding::kZipped));
-    journal_->add(messages::channels::kFrame, messages::to_bytes(images));
-    journal_->add(messages::channels::kKeyframe, bytes);
-}
-
-void OctomapShell::save_trajectory() {
-    if (trajectory_.empty()) return;
-    journal_->add(messages::channels::kTrajectory, trajectory_);
-    trajectory_.clear();
-    saved_us_ = messages::now_us();
-}
-
-/// Once a second: poses, of which a kill loses no more; now and then: without the keyframes that went for
-/// newer ones.
-void OctomapShell::tend_journal() {
-    constexpr std::int64_t kSavePeriod_us = 1000000;
-    if (messages::now_us() - saved_us_ >= kSavePeriod_us) save_trajectory();
-    if (journal_->is_due_to_compact() && !named_.empty()) {
-        save_trajectory();
-        std::set<int> kept = named_;
-        while (kept.size() > max_keyframes_) kept.erase(kept.begin());
-        const int newest = *named_.rbegin();
-        std::set<std::int64_t> frames;  // of the keyframes that stay, by utime
-        std::int64_t last_trajectory = -1;
-        const auto stays = [&](const keyframe_t& keyframe) {
-            return keyframe.id > newest || kept.contains(keyframe.id);
-        };
-        journal_->replay([&](const messages::LogEvent& event) {
-            if (event.channel == messages::channels::kTrajectory) last_trajectory = event.number;
-            if (event.channel != messages::channels::kKeyframe) return;
-            const auto keyframe = messages::decode<keyframe_t>(event.bytes);
-            if (stays(keyframe)) frames.insert(keyframe.utime);
-        });
-        journal_->compact([&](const messages::LogEvent& event) {
-            if (event.channel == messages::channels::kTrajectory) return event.number == last_trajectory;
-            if (event.channel == messages::channels::kCameraInfo) return true;
-            if (event.channel == messages::channels::kFrame)
-                return frames.contains(messages::decode<bot_core::images_t>(event.bytes).utime);
-            return stays(messages::decode<keyframe_t>(event.bytes));
-        });
-    }
-    if (const auto news = journal_->news()) status_.remark("journal", *news);
 }
 
 /// octomap.bt, as planemap-run leaves it, beside the map.
@@ -312,7 +215,7 @@ void OctomapShell::add(ScanId id, const std::shared_ptr<const StoredScan>& scan,
 int OctomapShell::poll() {
     constexpr int kIdleMs = 100;
     watch_.tell(messages::now_us());
-    if (journal_) tend_journal();
+    if (journal_) journal_->tend(named_, max_keyframes_, status_);
     if (worker_) {
         if (const auto state = worker_->newer_state()) publish(*state);
     } else if (unpublished_ && messages::now_us() - last_publish_us_ >= kPublishPeriodUs) {
@@ -327,7 +230,7 @@ void OctomapShell::finish() {
     drop("keyframes of components other than the largest", others);
     drop("keyframes that never got a pose", static_cast<std::int64_t>(waiting_.size()) - others);
     waiting_.clear();
-    if (journal_) save_trajectory();
+    if (journal_) journal_->save_trajectory();
     if (!worker_) {
         publish(state());
         return write_tree();

@@ -6,7 +6,6 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <planemap/keyframe_t.hpp>
 #include <set>
 #include <vector>
 
@@ -14,12 +13,13 @@
 #include "core/replacement.hpp"
 #include "messages/channels.hpp"
 #include "messages/frame_decoder.hpp"
-#include "messages/journal.hpp"
 #include "messages/keyframe_watch.hpp"
 #include "messages/process.hpp"
 #include "messages/stream_guard.hpp"
 #include "octomap/octomap_builder.hpp"
 #include "octomap/octomap_worker.hpp"
+#include "octomap/recent_frames.hpp"
+#include "octomap/scan_journal.hpp"
 
 namespace planemap::octomap {
 
@@ -55,21 +55,12 @@ class OctomapShell : public messages::Shell {
     OctomapBuilder& builder() { return *builder_; }
 
   private:
-    struct Recent {
-        std::shared_ptr<const messages::Frame> frame;
-        std::size_t bytes;
-    };
-    void on_frame(const std::shared_ptr<const messages::Frame>& frame);
     void on_keyframe(const messages::RawMessage& message);
     void on_look(const messages::RawMessage& message);
     void on_trajectory(const messages::RawMessage& message);
     void take(const KeyframeTrajectory& all);
     void resume();
-    void keep(const messages::Frame& frame, std::span<const std::uint8_t> bytes);
-    void tend_journal();
-    void save_trajectory();
     void write_tree();
-    std::shared_ptr<const messages::Frame> recent(std::int64_t utime) const;
     std::shared_ptr<const StoredScan> scan_of(const messages::Frame& frame);
     void add(ScanId id, const std::shared_ptr<const StoredScan>& scan, const Pose& world_from_camera,
              const ScanAnchor& anchor);
@@ -89,14 +80,10 @@ class OctomapShell : public messages::Shell {
     messages::StreamGuard keyframe_guard_{messages::channels::kKeyframe, "keyframes", status_};
     messages::StreamGuard trajectory_guard_{messages::channels::kTrajectory, "trajectories", status_, false};
     messages::KeyframeWatch watch_{status_, "the OctoMap is incomplete"};
-    std::deque<Recent> recent_;
-    std::size_t recent_bytes_ = 0;
-    std::unique_ptr<messages::Journal> journal_;  ///< null without
-    std::optional<CameraInfo> journal_camera_;    ///< that the journal described last
-    std::vector<std::uint8_t> trajectory_;        ///< the last one, where the journal does not have it yet
-    std::set<int> named_;                         ///< keyframes of the last trajectory
-    std::int64_t saved_us_ = 0,
-                 keyframes_of_ = 0;  ///< wall clock of the last save; session of the last keyframe
+    RecentFrames recent_;
+    std::unique_ptr<ScanJournal> journal_;  ///< null without
+    std::set<int> named_;                   ///< keyframes of the last trajectory
+    std::int64_t keyframes_of_ = 0;         ///< session of the last keyframe
     /// Keyframes without a pose in the largest component, by id. Their depth is compressed at once: to do so
     /// with many when their poses come would block.
     std::map<int, std::shared_ptr<const StoredScan>> waiting_;
