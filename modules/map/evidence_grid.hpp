@@ -6,21 +6,10 @@
 
 #include "core/geometry/bitmap.hpp"
 #include "core/geometry/flat_polygon.hpp"
-#include "core/geometry/outline.hpp"
 #include "core/geometry/pose.hpp"
-#include "map/edges.hpp"
 #include "map/evidence_cells.hpp"
 
 namespace planemap::map {
-
-/// How a plane's shape is read off its evidence.
-struct OutlineOptions {
-    int min_support = 1;        ///< that a cell needs to be part of the shape, 1 to 15
-    double min_ring_m2 = 0.01;  ///< smaller parts and smaller holes are left out
-    double tolerance_m =
-        0.03;             ///< no traced vertex is further than this from the simplified outline, but for
-    double least_m2 = 0;  ///< teeth and notches whose corners enclose less, see EdgeRules
-};
 
 /// Where a plane has been seen and where something beyond it was: a raster in the plane that knows both for
 /// each cell (EvidenceCells), 64 cells at once. It grows with the plane's extent and not with the number of
@@ -79,26 +68,19 @@ class EvidenceGrid {
     int miss(const Block& block, int looks);
     int miss_before(const Block& block, int looks);
 
-    /// The shape: cells that are there with enough support; slits of up to two cells closed,
-    /// slivers of up to two cells left out unless they are well supported. Metres in the grid's x and y; its
-    /// rings do not cross.
-    /// It ends at the lines where other planes meet it, if it comes within their reach: see end_at().
-    Outline outline(const OutlineOptions& options, const std::vector<MeetingLine>& lines = {}) const;
-
-    /// The same as exact as cells are and cheap, for what is compared and not shown: rings may cross.
-    Outline exact_outline(const OutlineOptions& options) const;
-
-  private:
-    Outline traced(const OutlineOptions& options, const std::vector<MeetingLine>& lines) const;
-    struct Shape {
-        Bitmap cells, sure;
-    };
-    Shape shape(int min_support) const;
-    void grow(int word_from, int y_from, int word_to, int y_to);
-    EvidenceCells* row(int y) { return cells_.data() + static_cast<std::ptrdiff_t>(y - y0_) * words_; }
+    /// The stored cells, for who reads shapes off them: words() words in each of rows() rows from y0(); word
+    /// w of a row holds the cells x = 64 (word0() + w) to 64 (word0() + w) + 63.
+    int word0() const { return word0_; }
+    int y0() const { return y0_; }
+    int words() const { return words_; }
+    int rows() const { return rows_; }
     const EvidenceCells* row(int y) const {
         return cells_.data() + static_cast<std::ptrdiff_t>(y - y0_) * words_;
     }
+
+  private:
+    void grow(int word_from, int y_from, int word_to, int y_to);
+    EvidenceCells* row(int y) { return cells_.data() + static_cast<std::ptrdiff_t>(y - y0_) * words_; }
     void draw(const FlatPolygon& polygon, Bitmap& inside);
     /// f(word of the bitmap, cells of the grid) where the bitmap has any.
     template <typename F>

@@ -12,13 +12,6 @@ namespace planemap::map {
 
 namespace {
 
-/// No depth camera sees a region that reaches further from its middle, nor more of them: a raster takes
-/// memory.
-constexpr double kMaxRegionReach_m = 25;
-constexpr std::size_t kMaxRegions = 256;
-constexpr std::size_t kMaxRingVertices = 32767;
-constexpr double kMaxPoints = 1e9;
-
 bool is_near(const Pose& world_from_camera) {
     return is_valid(world_from_camera) && is_near_origin(world_from_camera.translation());
 }
@@ -28,57 +21,6 @@ bool is_in_map(const StoredKeyframe& keyframe) {
 }
 
 }  // namespace
-
-/// A valid region whose moments determine a plane, of a size and at a place that a sensor can see.
-bool KeyframeStore::is_usable(const PlanarRegion& region) const {
-    if (!is_valid(region) || !fit_plane(region.moments).valid) return false;
-    const double reach = std::min(max_extent_m_ / 2, kMaxRegionReach_m);
-    if (!(region.box.half_extents.norm() <= reach)) return false;
-    if (!is_near_origin(region.box.frame_from_box.translation())) return false;
-    // Moments, plane and box say the same.
-    const Eigen::Vector3d mean = region.moments.mean();
-    if (!(region.moments.count <= kMaxPoints)) return false;
-    if (!((mean - region.box.frame_from_box.translation()).norm() <= region.box.half_extents.norm() + 1))
-        return false;
-    if (!(std::abs(region.plane.signed_distance(mean)) <= 1)) return false;
-    return std::all_of(region.outline.rings.begin(), region.outline.rings.end(), [&](const Ring& ring) {
-        return ring.size() <= kMaxRingVertices &&
-               std::all_of(ring.begin(), ring.end(), [&](const auto& v) { return v.norm() <= reach; });
-    });
-}
-
-/// Which of the regions, by falling number of points.
-std::vector<std::size_t> KeyframeStore::usable_regions(const std::vector<PlanarRegion>& regions,
-                                                       MapLosses& losses) const {
-    std::vector<std::size_t> usable;
-    for (std::size_t i = 0; i < regions.size(); ++i) {
-        if (!is_usable(regions[i])) {
-            ++losses.regions_refused;
-        } else if (usable.size() == kMaxRegions) {
-            ++losses.regions_too_many;
-        } else {
-            usable.push_back(i);
-        }
-    }
-    std::stable_sort(usable.begin(), usable.end(), [&](std::size_t a, std::size_t b) {
-        return regions[a].moments.count > regions[b].moments.count;
-    });
-    return usable;
-}
-
-StoredKeyframe KeyframeStore::stored_view(int keyframe_id, std::int64_t utime,
-                                          const std::vector<PlanarRegion>& regions, const DepthNoise& noise,
-                                          MapLosses& losses) const {
-    const std::vector<std::size_t> usable = usable_regions(regions, losses);
-    std::vector<PlanarRegion> sorted;
-    sorted.reserve(usable.size());
-    for (const std::size_t i : usable) sorted.push_back(regions[i]);
-    StoredKeyframe view = stored(utime, sorted);
-    for (std::size_t i = 0; i < usable.size(); ++i) view.regions[i].number = static_cast<int>(usable[i]);
-    view.noise = noise;
-    view.id = keyframe_id;
-    return view;
-}
 
 KeyframeStore::Arrival KeyframeStore::add(const Keyframe& keyframe, MapLosses& losses) {
     if (keyframe.id <= retired_up_to_) {  // what it saw is in the planes
@@ -101,7 +43,7 @@ KeyframeStore::Arrival KeyframeStore::add(const Keyframe& keyframe, MapLosses& l
     }
     newest_id_ = std::max(newest_id_, keyframe.id);
     keyframes_[keyframe.id] =
-        stored_view(keyframe.id, keyframe.utime, keyframe.regions, keyframe.noise, losses);
+        intake_.view(keyframe.id, keyframe.utime, keyframe.regions, keyframe.noise, losses);
     return Arrival::kNew;
 }
 
@@ -109,19 +51,14 @@ KeyframeStore::Arrival KeyframeStore::add(const Keyframe& keyframe, MapLosses& l
 KeyframeStore::Anchor KeyframeStore::anchor_of(const Look& look) {
     Anchor anchor{nullptr, look.keyframe_from_camera};
     if (!is_near(anchor.keyframe_from_camera)) return anchor;
-    int id = look.keyframe_id;
-    std::int64_t utime = look.keyframe_utime;
-    for (std::size_t i = 0; i <= redirections_.size(); ++i) {
-        const auto known = keyframes_.find(id);
+    Heirs::Place place{look.keyframe_id, look.keyframe_utime};
+    for (std::size_t step = 0; step <= Heirs::kMost; ++step) {
+        const auto known = keyframes_.find(place.id);
         if (known != keyframes_.end()) {
-            if (known->second.utime == utime) anchor.keyframe = &known->second;
+            if (known->second.utime == place.utime) anchor.keyframe = &known->second;
             return anchor;
         }
-        const auto heir = redirections_.find(id);
-        if (heir == redirections_.end() || heir->second.utime != utime) return anchor;
-        anchor.keyframe_from_camera = heir->second.heir_from_gone * anchor.keyframe_from_camera;
-        id = heir->second.heir_id;
-        utime = heir->second.heir_utime;
+        if (!heirs_.follow(place, anchor.keyframe_from_camera)) return anchor;
     }
     return anchor;
 }
@@ -150,7 +87,7 @@ KeyframeStore::Looked KeyframeStore::add(const Look& look, MapLosses& losses) {
         ++losses.looks_refused;
         return {};
     }
-    StoredKeyframe news = stored_view(look.keyframe_id, look.utime, look.regions, keyframe.noise, losses);
+    StoredKeyframe news = intake_.view(look.keyframe_id, look.utime, look.regions, keyframe.noise, losses);
     news.number = look.number;
     news.keyframe_from_camera = anchor.keyframe_from_camera;
     if (keyframe.world_from_camera)
@@ -158,13 +95,6 @@ KeyframeStore::Looked KeyframeStore::add(const Look& look, MapLosses& losses) {
     keyframe.take_later(std::move(news));
     StoredKeyframe* view = view_of_look();
     return {view, 1, view != nullptr, keyframe.id};
-}
-
-void KeyframeStore::redirect_looks(const StoredKeyframe& gone, const StoredKeyframe& heir) {
-    constexpr std::size_t kMost = 64;
-    redirections_[gone.id] = {gone.utime, heir.id, heir.utime,
-                              heir.world_from_camera->inverse(Eigen::Isometry) * *gone.world_from_camera};
-    if (redirections_.size() > kMost) redirections_.erase(redirections_.begin());
 }
 
 void KeyframeStore::set_pose(int id, const Pose& world_from_camera) {
@@ -265,7 +195,7 @@ std::size_t KeyframeStore::drop_waiting(std::size_t most) {
 void KeyframeStore::absorb(KeyframeStore&& other) {
     keyframes_.merge(other.keyframes_);
     poses_.merge(other.poses_);
-    redirections_.merge(other.redirections_);
+    heirs_.absorb(std::move(other.heirs_));
     named_.insert(named_.end(), other.named_.begin(), other.named_.end());
     newest_id_ = std::max(newest_id_, other.newest_id_);
 }

@@ -8,7 +8,9 @@
 
 #include "core/keyframe.hpp"
 #include "core/look.hpp"
+#include "map/heirs.hpp"
 #include "map/map_losses.hpp"
+#include "map/region_intake.hpp"
 #include "map/stored_keyframe.hpp"
 
 namespace planemap::map {
@@ -25,7 +27,7 @@ constexpr bool is_far_ahead(int id, int newest_id) {
 class KeyframeStore {
   public:
     /// Regions that reach further than max_extent_m / 2 from their middle are refused.
-    explicit KeyframeStore(double max_extent_m) : max_extent_m_(max_extent_m) {}
+    explicit KeyframeStore(double max_extent_m) : intake_(max_extent_m) {}
 
     enum class Arrival {
         kRefused,
@@ -65,7 +67,7 @@ class KeyframeStore {
     /// update().
     std::vector<StoredKeyframe> take_replaced(const std::vector<KeyframePose>& named);
     /// Looks of a keyframe that went are looks from near this one, at their poses now, from here on.
-    void redirect_looks(const StoredKeyframe& gone, const StoredKeyframe& heir);
+    void redirect_looks(const StoredKeyframe& gone, const StoredKeyframe& heir) { heirs_.add(gone, heir); }
     /// The keyframes in the map nearest to a pose (a radian counts as a metre), the nearest first.
     std::vector<StoredKeyframe*> nearest(const Pose& world_from_camera, std::size_t count);
 
@@ -95,29 +97,18 @@ class KeyframeStore {
     std::size_t memory_bytes() const;
 
   private:
-    bool is_usable(const PlanarRegion& region) const;
-    StoredKeyframe stored_view(int keyframe_id, std::int64_t utime, const std::vector<PlanarRegion>& regions,
-                               const DepthNoise& noise, MapLosses& losses) const;
     struct Anchor {
         StoredKeyframe* keyframe = nullptr;
         Pose keyframe_from_camera = Pose::Identity();
     };
     Anchor anchor_of(const Look& look);
-    std::vector<std::size_t> usable_regions(const std::vector<PlanarRegion>& regions,
-                                            MapLosses& losses) const;
 
-    double max_extent_m_;
+    RegionIntake intake_;
     std::map<int, StoredKeyframe> keyframes_;  ///< by id
     std::map<int, Pose> poses_;
     std::vector<KeyframePose> named_;  ///< by the last trajectory
-    struct Redirection {
-        std::int64_t utime;  ///< of the keyframe that went
-        int heir_id;
-        std::int64_t heir_utime;
-        Pose heir_from_gone;
-    };
-    std::map<int, Redirection> redirections_;  ///< by the id of the keyframe that went; of the last ones
-    int newest_id_ = -1;                       ///< the largest id of a keyframe so far
+    Heirs heirs_;
+    int newest_id_ = -1;                                   ///< the largest id of a keyframe so far
     int retired_up_to_ = std::numeric_limits<int>::min();  ///< keyframes up to this id are gone for good
 };
 

@@ -95,7 +95,7 @@ std::optional<MapPlane> plane_of(const PlaneEstimate& estimate, const Outline& o
 
 std::optional<MapPlane> derived_plane(const PlaneEstimate& estimate, const DerivationRules& rules) {
     if (estimate.keyframes < rules.min_keyframes) return std::nullopt;
-    return plane_of(estimate, estimate.grid.exact_outline(rules.outline), rules);
+    return plane_of(estimate, exact_outline_of(estimate.grid, rules.outline), rules);
 }
 
 std::optional<MapPlane> ended_plane(const PlaneEstimate& estimate, const DerivationRules& rules,
@@ -103,7 +103,7 @@ std::optional<MapPlane> ended_plane(const PlaneEstimate& estimate, const Derivat
     const Pose axes_from_world = estimate.box.frame_from_box.inverse(Eigen::Isometry);
     const std::vector<MeetingLine> lines =
         lines_in_grid(meetings, axes_from_world, axes_from_world * estimate.grid.world_from_grid());
-    return plane_of(estimate, estimate.grid.outline(rules.outline, lines), rules);
+    return plane_of(estimate, outline_of(estimate.grid, rules.outline, lines), rules);
 }
 
 bool keeps_outline(const PlaneEstimate& estimate, const MapPlane& derived, const Plane& as_drawn) {

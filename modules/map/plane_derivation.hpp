@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/plane_map.hpp"
-#include "map/evidence_grid.hpp"
+#include "map/evidence_shape.hpp"
 #include "map/plane_estimate.hpp"
 
 namespace planemap::map {

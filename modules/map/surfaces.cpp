@@ -8,6 +8,8 @@
 #include <optional>
 #include <set>
 
+#include "map/evidence_shape.hpp"
+
 namespace planemap::map {
 
 namespace {
@@ -157,7 +159,7 @@ class SurfaceUnion {
         const EvidenceGrid& grid = planes_.estimates()[plane].grid;
         if (grid.empty()) return shape;
         const Pose frame_from_grid = raster.frame_from_world * grid.world_from_grid();
-        Outline outline = grid.outline({});
+        Outline outline = outline_of(grid, {});
         for (Ring& ring : outline.rings)
             for (Eigen::Vector2d& v : ring)
                 v = (frame_from_grid * Eigen::Vector3d(v.x(), v.y(), 0)).head<2>();

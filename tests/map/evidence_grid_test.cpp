@@ -7,6 +7,7 @@
 
 #include "core/geometry/crossing.hpp"
 #include "core/scene.hpp"
+#include "map/evidence_shape.hpp"
 
 namespace planemap::map {
 namespace {
@@ -41,7 +42,7 @@ TEST(EvidenceGrid, HasTheAreaOfWhatWasAdded) {
     const int fresh =
         add(grid, Outline{{rectangle_ring(-1, -0.5, 1, 0.5), rectangle_ring(-0.2, -0.2, 0.2, 0.2)}});
     EXPECT_EQ(fresh, 2944) << "(2 - 0.16) / 0.025^2";
-    const Outline outline = grid.outline({});
+    const Outline outline = outline_of(grid, {});
     EXPECT_EQ(outline.rings.size(), 2u);
     EXPECT_NEAR(area(outline), 2 - 0.16, 0.03);
     EXPECT_FALSE(contains(outline, {0, 0}));
@@ -79,8 +80,8 @@ TEST(EvidenceGrid, GrowsAndCounts) {
     EXPECT_EQ(hits(1e9, -1e9), 0);
     OutlineOptions twice;
     twice.min_support = 3;
-    EXPECT_NEAR(area(grid.outline(twice)), 0.5 + 1, 1e-9);
-    EXPECT_NEAR(area(grid.outline({})), 6, 1e-9);
+    EXPECT_NEAR(area(outline_of(grid, twice)), 0.5 + 1, 1e-9);
+    EXPECT_NEAR(area(outline_of(grid, {})), 6, 1e-9);
     for (int i = 0; i < 300; ++i) add(grid, Outline{{rectangle_ring(0, 0, 1, 1)}}, i % 3);
     EXPECT_EQ(hits(0.2, 0.5), EvidenceCells::kMaxSupport);
     EXPECT_EQ(hits(4.7, 0.5), 2);
@@ -92,23 +93,23 @@ TEST(EvidenceGrid, AddsAnotherGridInAnotherFrame) {
     add(other, shape, 1);
     EvidenceGrid grid(Pose::Identity(), 0.025);
     grid.add(other);
-    EXPECT_NEAR(area(grid.outline({})), area(shape), 0.06);
+    EXPECT_NEAR(area(outline_of(grid, {})), area(shape), 0.06);
     const Eigen::Vector3d hole = other.world_from_grid() * Eigen::Vector3d(0.3, 0, 0);
     const Eigen::Vector3d solid = other.world_from_grid() * Eigen::Vector3d(-0.3, 0, 0);
     EXPECT_EQ(grid.evidence(hole.head<2>()).support, 0);
     EXPECT_EQ(grid.evidence(solid.head<2>()).support, 2);
     grid.add(EvidenceGrid(Pose::Identity(), 0.025));
-    EXPECT_NEAR(area(grid.outline({})), area(shape), 0.06);
+    EXPECT_NEAR(area(outline_of(grid, {})), area(shape), 0.06);
 }
 
 TEST(EvidenceGrid, LeavesOutSmallPartsAndHoles) {
     EvidenceGrid grid(Pose::Identity(), 0.025);
     add(grid, Outline{{rectangle_ring(0, 0, 1, 1), rectangle_ring(0.4, 0.4, 0.475, 0.475),
                        rectangle_ring(2, 0, 2.075, 0.075)}});
-    const Outline outline = grid.outline({});
+    const Outline outline = outline_of(grid, {});
     EXPECT_EQ(outline.rings.size(), 1u);
     EXPECT_NEAR(area(outline), 1, 1e-9);
-    EXPECT_TRUE(EvidenceGrid().outline({}).empty());
+    EXPECT_TRUE(outline_of(EvidenceGrid(), {}).empty());
 }
 
 TEST(EvidenceGrid, SliversNeedSupport) {
@@ -117,9 +118,9 @@ TEST(EvidenceGrid, SliversNeedSupport) {
     EvidenceGrid grid(Pose::Identity(), 0.025);
     add(grid, plate);
     add(grid, strip);
-    EXPECT_NEAR(area(grid.outline(every_cell())), 1, 1e-9) << "seen once, from afar";
+    EXPECT_NEAR(area(outline_of(grid, every_cell())), 1, 1e-9) << "seen once, from afar";
     for (int i = 0; i < 3; ++i) add(grid, strip, 2);
-    EXPECT_NEAR(area(grid.outline(every_cell())), 1.05, 1e-9) << "seen again and again";
+    EXPECT_NEAR(area(outline_of(grid, every_cell())), 1.05, 1e-9) << "seen again and again";
 }
 
 TEST(EvidenceGrid, WhatIsMissedAsOftenAsSeenGoesAndComesBack) {
@@ -128,7 +129,7 @@ TEST(EvidenceGrid, WhatIsMissedAsOftenAsSeenGoesAndComesBack) {
     EXPECT_EQ(add(grid, plate), 3200);
     const auto left = [](const Eigen::Vector2d& p) { return p.x() < 1; };
     EXPECT_EQ(miss(grid, 1, left), 1600) << "seen once, looked through once";
-    EXPECT_NEAR(area(grid.outline({})), 1, 1e-9);
+    EXPECT_NEAR(area(outline_of(grid, {})), 1, 1e-9);
     EXPECT_EQ(miss(grid, 1, left), 0) << "it is gone";
     EXPECT_EQ(grid.evidence({0.5, 0.5}).odds, -1);
     EXPECT_EQ(grid.evidence({1.5, 0.5}).odds, 1);
@@ -145,8 +146,8 @@ TEST(EvidenceGrid, MissesCountOnlyWhereTheyAre) {
     std::vector<EvidenceGrid::Block> lower, beyond;
     part.seen_blocks({-10, -10}, {10, -0.1}, lower);
     for (const EvidenceGrid::Block& block : lower) part.miss(block, 1);
-    EXPECT_NEAR(area(part.outline({})), 6, 0.7) << "the upper half is left";
-    EXPECT_FALSE(contains(part.outline({}), {0, -0.5}));
+    EXPECT_NEAR(area(outline_of(part, {})), 6, 0.7) << "the upper half is left";
+    EXPECT_FALSE(contains(outline_of(part, {}), {0, -0.5}));
     part.seen_blocks({5, 5}, {6, 6}, beyond);
     EXPECT_TRUE(beyond.empty());
 }
@@ -204,7 +205,7 @@ TEST(EvidenceGrid, OutlinesDoNotCross) {
         OutlineOptions coarse;
         coarse.tolerance_m = 0.1;
         coarse.min_ring_m2 = 0.001;
-        EXPECT_FALSE(rings_cross(grid.outline(coarse)));
+        EXPECT_FALSE(rings_cross(outline_of(grid, coarse)));
     }
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "map/estimates.hpp"
+#include "map/evidence_shape.hpp"
 
 namespace planemap::map {
 namespace {
@@ -31,7 +32,7 @@ TEST(FoldedPlanes, KeepPointsShapeAndKeyframes) {
     EXPECT_EQ(folded.planes()[1].id, 3);
     EXPECT_EQ(folded.planes()[0].keyframes, 4);
     EXPECT_NEAR(points_of(folded.planes()), points, 1e-6);
-    EXPECT_NEAR(area(folded.planes()[0].grid.outline({})), 1.6, 0.1);
+    EXPECT_NEAR(area(outline_of(folded.planes()[0].grid, {})), 1.6, 0.1);
 }
 
 TEST(FoldedPlanes, WhatIsOnNoPlaneIsNotKept) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "map/estimates.hpp"
+#include "map/evidence_shape.hpp"
 
 namespace planemap::map {
 namespace {
@@ -20,7 +21,7 @@ constexpr double kMargin_m = 0.05;
 const FreeSpace kFreeSpace{kMargin_m};
 
 double shape_area(const PlaneEstimate& plane) {
-    return area(plane.grid.outline({}));
+    return area(outline_of(plane.grid, {}));
 }
 
 /// What is left of a plate 2 m ahead, which some looks saw, after others from the origin that see these.

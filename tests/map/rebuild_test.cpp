@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "map/estimates.hpp"
+#include "map/evidence_shape.hpp"
 
 namespace planemap::map {
 namespace {
@@ -68,7 +69,8 @@ TEST(Rebuild, DoesNotDependOnWhatThePlanesWereBefore) {
         ASSERT_EQ(other->estimates().size(), 1u);
         EXPECT_EQ(other->estimates()[0].plane.normal, a.estimates()[0].plane.normal);
         EXPECT_EQ(other->estimates()[0].plane.d, a.estimates()[0].plane.d);
-        EXPECT_EQ(area(other->estimates()[0].grid.outline({})), area(a.estimates()[0].grid.outline({})));
+        EXPECT_EQ(area(outline_of(other->estimates()[0].grid, {})),
+                  area(outline_of(a.estimates()[0].grid, {})));
     }
 }
 

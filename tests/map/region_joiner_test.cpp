@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "map/estimates.hpp"
+#include "map/evidence_shape.hpp"
 
 namespace planemap::map {
 namespace {
@@ -62,7 +63,7 @@ TEST(RegionJoiner, DrawsTheOutlineAndCountsWhatIsNew) {
     const int cells = joiner.draw(plane, seen.world_from_box(), seen.region, keyframe, 1);
     EXPECT_NEAR(cells, 1600, 90);
     EXPECT_EQ(joiner.draw(plane, seen.world_from_box(), seen.region, keyframe, 1), 0);
-    EXPECT_NEAR(area(plane.grid.outline({})), 1, 0.06);
+    EXPECT_NEAR(area(outline_of(plane.grid, {})), 1, 0.06);
 }
 
 }  // namespace
