@@ -86,10 +86,7 @@ PinholeCamera resized(const PinholeCamera& camera, double by_width, double by_he
     return {width, height, camera.fx * by_width, camera.fy * by_width, 0.5 * (width - 1), 0.5 * (height - 1)};
 }
 
-}  // namespace
-
-OptionList options_of(SimulatorOptions& options) {
-    OptionList list("Simulator");
+void add_images_and_walk(OptionList& list, SimulatorOptions& options) {
     list.add("frames", options.frames, {0, kMaxFrames},
              "Frames in all; 0: 900, once around the rooms, or the length of the visits or the trajectory");
     list.add("seed", options.seed, kAnyNumber, "Of textures, walk and noise");
@@ -118,6 +115,10 @@ OptionList options_of(SimulatorOptions& options) {
              "empty: the world's own walk");
     list.add("change", options.change_s, {0, 1e6, "s"},
              "When what changes in a world begins to, after the first frame");
+}
+
+/// What a sensor does wrong.
+void add_errors(OptionList& list, SimulatorOptions& options) {
     std::vector<std::string> profiles = profile_names();
     profiles.insert(profiles.begin(), "");
     list.add(
@@ -152,6 +153,14 @@ OptionList options_of(SimulatorOptions& options) {
     list.add("edges", options.edges, "What a sensor does wrong at edges; 0: nothing");
     list.add("holes", options.holes,
              "Readings that are missing at grazing angles and on bare walls; 0: none");
+}
+
+}  // namespace
+
+OptionList options_of(SimulatorOptions& options) {
+    OptionList list("Simulator");
+    add_images_and_walk(list, options);
+    add_errors(list, options);
     return list;
 }
 

@@ -202,10 +202,8 @@ const BadSequence& bad_sequence(const std::string& name) {
                          [&](const BadSequence& bad) { return bad.sequence.name == name; });
 }
 
-}  // namespace
-
-const std::vector<BadSequence>& bad_sequences() {
-    static const std::vector<BadSequence> kSequences{
+std::vector<BadSequence> disturbed_sequences() {
+    return {
         {{"redkitchen", "frames 0 to 239 of the recording", "", "", 0}, 0, 240, 100, "", 0},
         {{"fr1_rpy_start", "frames 0 to 239 of the recording", "", "", 0}, 0, 240, 100, "", 0},
         {{"sim:bad-office", "simulated office, 320 x 240", small("office", "frames=240"), "", 0},
@@ -235,6 +233,11 @@ const std::vector<BadSequence>& bad_sequences() {
          2,
          "none",
          0},
+    };
+}
+
+std::vector<BadSequence> returning_sequences() {
+    return {
         {{"sim:returns-office", "simulated office, a round, and returns to places of it",
           small("office", "speed=1&turn=90&frames=900"), "", 0},
          0,
@@ -265,6 +268,17 @@ const std::vector<BadSequence>& bad_sequences() {
          "",
          1080},
     };
+}
+
+}  // namespace
+
+const std::vector<BadSequence>& bad_sequences() {
+    static const std::vector<BadSequence> kSequences = [] {
+        std::vector<BadSequence> all = disturbed_sequences();
+        const std::vector<BadSequence> returning = returning_sequences();
+        all.insert(all.end(), returning.begin(), returning.end());
+        return all;
+    }();
     return kSequences;
 }
 

@@ -24,23 +24,8 @@ struct Arguments : BenchmarkOptions {
     std::string moments;
 };
 
-std::string description() {
-    return "Odometry and graph beside other people's, on the same sequences. Each row runs in a process of "
-           "its own,\n"
-           "on one thread.\n"
-           "Examples:\n"
-           "  planemap-bench-odometry --json rows.json              everything\n"
-           "  planemap-bench-odometry --sequences redkitchen,sim:kt0 --methods default,default-no-graph\n"
-           "  planemap-bench-odometry --sequences fr1_rpy_start --methods default "
-           "--odometry-max-points 200\n"
-           "  planemap-bench-odometry --sequences redkitchen --plots out/plots\n"
-           "  planemap-bench-odometry --table2                      the paper's Table 2\n"
-           "  planemap-bench-odometry --bad-moments                 what is said of covered, stuck, dark ... "
-           "images\n"
-           "Sequences (and any sim:..., see planemap-simulate --help; seed=1..5 is five of them):\n" +
-           benchmark::described(known_sequences(), 19) + "Methods:\n" +
-           benchmark::described(known_methods(), 19) +
-           "Columns:\n"
+std::string columns_text() {
+    return "Columns:\n"
            "  frames, lost   frames read; those without a pose, broken ones included\n"
            "  ATE m          absolute trajectory error after rigid alignment, RMSE, and the rest as TUM's\n"
            "                 evaluate_ate.py and evaluate_rpe.py define it\n"
@@ -63,8 +48,11 @@ std::string description() {
            "estimate times the true motion in between. ATE over all later visits after alignment, RPE from "
            "one "
            "to\n"
-           "the next; mean and deviation of the runs' RMSE.\n"
-           "Bad moments: images are disturbed, and each frame from then on is judged. Sequences:\n" +
+           "the next; mean and deviation of the runs' RMSE.\n";
+}
+
+std::string bad_moments_text() {
+    return "Bad moments: images are disturbed, and each frame from then on is judged. Sequences:\n" +
            benchmark::described(bad_sequence_infos(), 23) + "Moments:\n" +
            benchmark::described(known_disturbances(), 23) +
            "A pose is held against the last tracked frame before the moment, both in the odom frame; in a "
@@ -90,7 +78,25 @@ std::string description() {
            "these\n"
            "a frame has a pose against a keyframe from before the pause, or a loop closure ties one to such; "
            "false:\n"
-           "one of these relations is false as a loop closure is.\n"
+           "one of these relations is false as a loop closure is.\n";
+}
+
+std::string description() {
+    return "Odometry and graph beside other people's, on the same sequences. Each row runs in a process of "
+           "its own,\n"
+           "on one thread.\n"
+           "Examples:\n"
+           "  planemap-bench-odometry --json rows.json              everything\n"
+           "  planemap-bench-odometry --sequences redkitchen,sim:kt0 --methods default,default-no-graph\n"
+           "  planemap-bench-odometry --sequences fr1_rpy_start --methods default "
+           "--odometry-max-points 200\n"
+           "  planemap-bench-odometry --sequences redkitchen --plots out/plots\n"
+           "  planemap-bench-odometry --table2                      the paper's Table 2\n"
+           "  planemap-bench-odometry --bad-moments                 what is said of covered, stuck, dark ... "
+           "images\n"
+           "Sequences (and any sim:..., see planemap-simulate --help; seed=1..5 is five of them):\n" +
+           benchmark::described(known_sequences(), 19) + "Methods:\n" +
+           benchmark::described(known_methods(), 19) + columns_text() + bad_moments_text() +
            "Simulated sequences are rendered once and kept in the cache (--cache); they take up to 300 kB a "
            "frame.";
 }
