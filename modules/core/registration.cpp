@@ -10,8 +10,8 @@
 
 #include "core/footprints.hpp"
 #include "core/geometry/inverse_depth.hpp"
+#include "core/registration_kernels.hpp"
 #include "core/reprojection.hpp"
-#include "core/rounding.hpp"
 
 namespace planemap {
 
@@ -25,10 +25,10 @@ constexpr float kSameSigmas = 5;   // of inverse depth, between readings of one 
 
 /// Where the readings of one row land on the colour image.
 struct Row {
-    std::vector<float> x, y;  ///< pixels, plus a half: rounded down they are indices
-    std::vector<float> z;     ///< depth along the colour camera's axis, raw units; negative: nowhere
+    std::vector<float> x, y, z;  ///< see LandedRow
 
     explicit Row(int width) : x(static_cast<std::size_t>(width)), y(x), z(x) {}
+    LandedRow landed() { return {x.data(), y.data(), z.data()}; }
 };
 
 /// Carries readings to single colour pixels: right where a footprint is no larger than a pixel.
@@ -36,58 +36,54 @@ class Splat {
   public:
     Splat(const DepthImage& depth, const CameraInfo& camera, const Reprojection& reprojection)
         : depth_(depth),
-          width_(static_cast<float>(camera.color.width)),
-          height_(static_cast<float>(camera.color.height)),
+          width_(camera.color.width),
+          height_(camera.color.height),
           m_(reprojection.m.cast<float>()),
           t_((reprojection.t * camera.depth_units_per_metre).cast<float>()) {}
 
-    void project(int v, Row& row) const;
+    void project(int v, Row& row) const {
+        const Eigen::Vector3f along = m_.col(0), base = m_.col(1) * static_cast<float>(v) + m_.col(2);
+        kernels_.project({depth_.row(v),
+                          depth_.width,
+                          {along.x(), along.y(), along.z()},
+                          {base.x(), base.y(), base.z()},
+                          {t_.x(), t_.y(), t_.z()},
+                          static_cast<float>(width_),
+                          static_cast<float>(height_)},
+                         row.landed());
+    }
+    /// For each reading of a projected row its pixel, or one past the last, and its depth.
+    void address(Row& row, std::vector<int>& index, std::vector<std::uint16_t>& depth) const {
+        kernels_.address(row.landed(), depth_.width, width_, width_ * height_, index.data(), depth.data());
+    }
 
   private:
+    const RegistrationKernels& kernels_ = best_registration_kernels();
     const DepthImage& depth_;
-    float width_, height_;
+    int width_, height_;
     Eigen::Matrix3f m_;
     Eigen::Vector3f t_;  ///< raw units
 };
 
-void Splat::project(int v, Row& row) const {
-    // With q = K_color R K_depth^-1 (u, v, 1) z + K_color t the pixel is (q.x / q.z, q.y / q.z); the first
-    // term is linear in u along a row.
-    const float mx = m_(0, 0), my = m_(1, 0), mz = m_(2, 0), tx = t_.x(), ty = t_.y(), tz = t_.z();
-    const Eigen::Vector3f base = m_.col(1) * static_cast<float>(v) + m_.col(2);
-    const float base_x = base.x(), base_y = base.y(), base_z = base.z(), width = width_, height = height_;
-    const std::uint16_t* readings = depth_.row(v);
-    float *const x = row.x.data(), *const y = row.y.data(), *const z = row.z.data();
-    // Without a branch, for the compiler to take several pixels at a time.
-    for (int u = 0; u < depth_.width; ++u) {
-        const float raw = static_cast<float>(readings[u]), column = static_cast<float>(u);
-        const float qz = (base_z + mz * column) * raw + tz;
-        const float inverse = 1.0f / qz;  // infinite, and no pixel, for qz = 0
-        const float qx = ((base_x + mx * column) * raw + tx) * inverse + 0.5f;
-        const float qy = ((base_y + my * column) * raw + ty) * inverse + 0.5f;
-        const bool lands = (raw != 0) & (raw != 65535) & (qz >= 0.5f) & (qz < 65534.5f) & (qx >= 0) &
-                           (qy >= 0) & (qx < width) & (qy < height);
-        x[u] = qx;
-        y[u] = qy;
-        z[u] = lands ? qz : -1.0f;
-    }
-}
-
 void take_nearest(const Splat& splat, const DepthImage& depth, DepthImage& registered) {
     Row row(depth.width);
-    std::uint16_t* const pixels = registered.pixels.data();
-    const int width = registered.width;
-    const float *const x = row.x.data(), *const y = row.y.data(), *const z = row.z.data();
+    std::vector<int> index(row.x.size());
+    std::vector<std::uint16_t> value(row.x.size());
+    // With a place for what lands nowhere every reading is stored, and nothing is branched on.
+    std::vector<std::uint16_t> pixels(registered.pixels.size() + 1, 0);
     for (int v = 0; v < depth.height; ++v) {
         splat.project(v, row);
-        for (int u = 0; u < depth.width; ++u) {
-            if (z[u] < 0) continue;
-            std::uint16_t& target = pixels[static_cast<int>(y[u]) * width + static_cast<int>(x[u])];
-            const auto value = nearest_whole<std::uint16_t>(z[u]);
-            // A reading of 0, none, wraps to the farthest of all.
-            if (static_cast<std::uint16_t>(target - 1) >= value) target = value;
+        splat.address(row, index, value);
+        for (std::size_t u = 0; u < index.size(); ++u) {
+            std::uint16_t& target = pixels[static_cast<std::size_t>(index[u])];
+            // No reading, 0, wraps to the farthest of all.
+            const auto before = static_cast<std::uint16_t>(target - 1),
+                       now = static_cast<std::uint16_t>(value[u] - 1);
+            target = static_cast<std::uint16_t>(std::min(before, now) + 1);
         }
     }
+    pixels.pop_back();
+    registered.pixels = std::move(pixels);
 }
 
 /// The mean of the readings that land in a pixel and lie on the nearest surface there. Each says what its

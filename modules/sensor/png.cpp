@@ -3,12 +3,18 @@
 
 #include <spng.h>
 
+#include <bit>
 #include <cstdlib>
 #include <memory>
+#include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
+#include <utility>
 
 #include "core/files.hpp"
+#include "sensor/png_rows.hpp"
 
 namespace planemap::sensor {
 
@@ -32,10 +38,9 @@ Context open(std::string_view bytes, int width, int height, spng_ihdr& header) {
     if (!is_png(bytes)) throw std::runtime_error("not a PNG");
     Context context(spng_ctx_new(0));
     if (!context) throw std::bad_alloc();
-    constexpr std::size_t kMaxChunk = std::size_t{1} << 24;
     check(spng_set_crc_action(context.get(), SPNG_CRC_ERROR, SPNG_CRC_ERROR), "PNG");
     check(spng_set_image_limits(context.get(), kMaxImageSide, kMaxImageSide), "PNG");
-    check(spng_set_chunk_limits(context.get(), kMaxChunk, kMaxChunk), "PNG");
+    check(spng_set_chunk_limits(context.get(), kMaxPngChunk, kMaxPngChunk), "PNG");
     check(spng_set_png_buffer(context.get(), bytes.data(), bytes.size()), "PNG");
     check(spng_get_ihdr(context.get(), &header), "bad PNG header");
     if (header.width != static_cast<unsigned>(width) || header.height != static_cast<unsigned>(height)) {
@@ -55,6 +60,26 @@ void decode(spng_ctx* context, int format, void* out, std::size_t bytes, bool* e
     const int end = spng_decode_chunks(context);
     if (end_missing != nullptr) *end_missing = end == SPNG_IO_EOF;
     if (end_missing == nullptr || end != SPNG_IO_EOF) check(end, kDoing);
+}
+
+/// What nearly all files are, in half the time that spng takes; samples of 16 bits as they are in the file.
+/// Nothing for others: spng knows what is wrong with them, or reads what is unusual.
+template <typename T>
+std::optional<Image<T>> decode_usual(std::string_view bytes, int width, int height, int color_type) {
+    const auto fits = [](int side) { return side > 0 && side <= kMaxImageSide; };
+    if (!fits(width) || !fits(height) || !is_png(bytes)) return std::nullopt;
+    const int bit_depth = std::is_same_v<T, std::uint16_t> ? 16 : 8;
+    Image<T> image(width, height);
+    const std::span<std::uint8_t> rows(reinterpret_cast<std::uint8_t*>(image.pixels.data()),
+                                       image.pixels.size() * sizeof(T));
+    const PngFormat format{width, height, bit_depth, color_type, static_cast<int>(sizeof(T))};
+    if (!decode_png_rows(bytes, format, rows)) return std::nullopt;
+    return image;
+}
+
+std::uint16_t from_big_endian(std::uint16_t raw) {
+    if constexpr (std::endian::native == std::endian::big) return raw;
+    return static_cast<std::uint16_t>(raw << 8 | raw >> 8);
 }
 
 const char* type_name(int color_type) {
@@ -104,6 +129,11 @@ bool is_png(std::string_view bytes) {
 }
 
 DepthImage decode_depth_png(std::string_view bytes, int width, int height, bool* end_missing) {
+    if (auto usual = decode_usual<std::uint16_t>(bytes, width, height, SPNG_COLOR_TYPE_GRAYSCALE)) {
+        for (std::uint16_t& raw : usual->pixels) raw = from_big_endian(raw);
+        if (end_missing != nullptr) *end_missing = false;
+        return *std::move(usual);
+    }
     spng_ihdr header{};
     const Context context = open(bytes, width, height, header);
     if (header.color_type != SPNG_COLOR_TYPE_GRAYSCALE || header.bit_depth != 16) {
@@ -117,6 +147,11 @@ DepthImage decode_depth_png(std::string_view bytes, int width, int height, bool*
 }
 
 RgbImage decode_color_png(std::string_view bytes, int width, int height, bool* end_missing) {
+    static_assert(sizeof(Rgb) == 3);
+    if (auto usual = decode_usual<Rgb>(bytes, width, height, SPNG_COLOR_TYPE_TRUECOLOR)) {
+        if (end_missing != nullptr) *end_missing = false;
+        return *std::move(usual);
+    }
     spng_ihdr header{};
     const Context context = open(bytes, width, height, header);
     if (header.bit_depth != 8) {
@@ -124,7 +159,6 @@ RgbImage decode_color_png(std::string_view bytes, int width, int height, bool* e
                                  std::to_string(header.bit_depth));
     }
     RgbImage color(width, height);
-    static_assert(sizeof(Rgb) == 3);
     decode(context.get(), SPNG_FMT_RGB8, color.pixels.data(), color.pixels.size() * sizeof(Rgb), end_missing);
     return color;
 }
