@@ -52,9 +52,9 @@ class Splat {
                           static_cast<float>(height_)},
                          row.landed());
     }
-    /// For each reading of a projected row its pixel, or one past the last, and its depth.
+    /// For each reading of a projected row its pixel and its depth; 0 where it landed nowhere.
     void address(Row& row, std::vector<int>& index, std::vector<std::uint16_t>& depth) const {
-        kernels_.address(row.landed(), depth_.width, width_, width_ * height_, index.data(), depth.data());
+        kernels_.address(row.landed(), depth_.width, width_, index.data(), depth.data());
     }
 
   private:
@@ -69,21 +69,19 @@ void take_nearest(const Splat& splat, const DepthImage& depth, DepthImage& regis
     Row row(depth.width);
     std::vector<int> index(row.x.size());
     std::vector<std::uint16_t> value(row.x.size());
-    // With a place for what lands nowhere every reading is stored, and nothing is branched on.
-    std::vector<std::uint16_t> pixels(registered.pixels.size() + 1, 0);
+    std::uint16_t* const pixels = registered.pixels.data();
     for (int v = 0; v < depth.height; ++v) {
         splat.project(v, row);
         splat.address(row, index, value);
         for (std::size_t u = 0; u < index.size(); ++u) {
-            std::uint16_t& target = pixels[static_cast<std::size_t>(index[u])];
-            // No reading, 0, wraps to the farthest of all.
+            // Without a branch: no reading, 0, wraps to the farthest of all, and where the nearer is what was
+            // there, that is stored again.
+            std::uint16_t& target = pixels[index[u]];
             const auto before = static_cast<std::uint16_t>(target - 1),
                        now = static_cast<std::uint16_t>(value[u] - 1);
             target = static_cast<std::uint16_t>(std::min(before, now) + 1);
         }
     }
-    pixels.pop_back();
-    registered.pixels = std::move(pixels);
 }
 
 /// The mean of the readings that land in a pixel and lie on the nearest surface there. Each says what its

@@ -19,16 +19,15 @@ struct ReadingsRow {
 
 /// Where the readings of a row land on the colour image.
 struct LandedRow {
-    float *x, *y;  ///< pixels, plus a half: rounded down they are indices
-    float* z;      ///< depth along the colour camera's axis, raw units; negative: nowhere
+    float *x, *y;  ///< pixels, plus a half: rounded down they are indices; 0 for what lands nowhere
+    float* z;      ///< depth along the colour camera's axis, raw units; -1: nowhere
 };
 
 struct RegistrationKernels {
     const char* name;
     void (*project)(const ReadingsRow& row, const LandedRow& landed);
-    /// Index of the pixel and whole depth of each reading that landed; `nowhere` and 65535 for the others.
-    void (*address)(const LandedRow& landed, int width, int color_width, int nowhere, int* index,
-                    std::uint16_t* depth);
+    /// Index of the pixel and whole depth of each reading that landed; the first pixel and 0 for the others.
+    void (*address)(const LandedRow& landed, int width, int color_width, int* index, std::uint16_t* depth);
 };
 
 const RegistrationKernels& baseline_registration_kernels();

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The kernels' code; a file that includes it says which instruction set it is compiled for.
 #include "core/registration_kernels.hpp"
-#include "core/rounding.hpp"
 
 namespace planemap {
 namespace {
@@ -23,20 +22,18 @@ void project(const ReadingsRow& row, const LandedRow& landed) {
         const float qy = ((base_y + my * column) * raw + ty) * inverse + 0.5f;
         const bool lands = (raw != 0) & (raw != 65535) & (qz >= 0.5f) & (qz < 65534.5f) & (qx >= 0) &
                            (qy >= 0) & (qx < width) & (qy < height);
-        x[u] = qx;
-        y[u] = qy;
+        x[u] = lands ? qx : 0.0f;
+        y[u] = lands ? qy : 0.0f;
         z[u] = lands ? qz : -1.0f;
     }
 }
 
-void address(const LandedRow& landed, int width, int color_width, int nowhere, int* __restrict index,
+void address(const LandedRow& landed, int width, int color_width, int* __restrict index,
              std::uint16_t* __restrict depth) {
     const float *const x = landed.x, *const y = landed.y, *const z = landed.z;
     for (int u = 0; u < width; ++u) {
-        const bool lands = z[u] > 0;
-        const int column = static_cast<int>(lands ? x[u] : 0), line = static_cast<int>(lands ? y[u] : 0);
-        index[u] = lands ? line * color_width + column : nowhere;
-        depth[u] = static_cast<std::uint16_t>(nearest_whole<int>(lands ? z[u] : 65535.0f));
+        index[u] = static_cast<int>(y[u]) * color_width + static_cast<int>(x[u]);
+        depth[u] = static_cast<std::uint16_t>(static_cast<int>(z[u] + 0.5f));
     }
 }
 

@@ -4,7 +4,6 @@
 #include <libdeflate.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <cstring>
 #include <memory>
 #include <new>
@@ -94,16 +93,40 @@ bool inflate(const std::vector<std::string_view>& chunks, std::span<std::uint8_t
                                       out.size(), nullptr) == LIBDEFLATE_SUCCESS;
 }
 
-std::uint8_t paeth(int left, int above, int above_left) {
-    const int to_left = std::abs(above - above_left), to_above = std::abs(left - above_left);
-    const int to_above_left = std::abs(left + above - 2 * above_left);
-    // Selected, not branched on: which is nearest is as good as random.
-    const int nearer = to_left <= to_above ? left : above;
-    return static_cast<std::uint8_t>(std::min(to_left, to_above) <= to_above_left ? nearer : above_left);
-}
-
 std::uint8_t sum(int a, int b) {
     return static_cast<std::uint8_t>(a + b);
+}
+
+/// The bytes of a pixel side by side, with room for their sums.
+using Lanes = std::int16_t __attribute__((vector_size(8)));
+using Bytes = std::uint8_t __attribute__((vector_size(4)));
+
+template <std::size_t Step>
+Lanes load(const std::uint8_t* pixel) {
+    Bytes bytes{};
+    std::memcpy(&bytes, pixel, Step);
+    return __builtin_convertvector(bytes, Lanes);
+}
+
+/// Predicts from the nearest of left, above and above left; a pixel's bytes at once, since each pixel waits
+/// for the one before it.
+template <std::size_t Step>
+void unfilter_paeth(std::span<std::uint8_t> row, std::span<const std::uint8_t> above) {
+    const auto magnitude = [](Lanes lanes) { return lanes < 0 ? -lanes : lanes; };
+    Lanes left{}, above_left{};
+    for (std::size_t i = 0; i + Step <= row.size(); i += Step) {
+        const Lanes up = load<Step>(above.data() + i);
+        const Lanes to_left = magnitude(up - above_left), to_above = magnitude(left - above_left);
+        const Lanes to_above_left = magnitude(left + up - 2 * above_left);
+        // Selected, not branched on: which is nearest is as good as random.
+        const Lanes nearer = to_left <= to_above ? left : up;
+        const Lanes least = to_left <= to_above ? to_left : to_above;
+        const Lanes predicted = least <= to_above_left ? nearer : above_left;
+        left = (load<Step>(row.data() + i) + predicted) & 255;
+        above_left = up;
+        const Bytes bytes = __builtin_convertvector(left, Bytes);
+        std::memcpy(row.data() + i, &bytes, Step);
+    }
 }
 
 /// With the number of bytes a pixel known to the compiler, the row unrolls.
@@ -124,9 +147,7 @@ bool unfilter(int filter, std::span<std::uint8_t> row, std::span<const std::uint
             for (std::size_t i = first; i < n; ++i) row[i] = sum(row[i], (row[i - Step] + above[i]) / 2);
             return true;
         case 4:
-            for (std::size_t i = 0; i < first; ++i) row[i] = sum(row[i], above[i]);
-            for (std::size_t i = first; i < n; ++i)
-                row[i] = sum(row[i], paeth(row[i - Step], above[i], above[i - Step]));
+            unfilter_paeth<Step>(row, above);
             return true;
         default:
             return false;
