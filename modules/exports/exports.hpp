@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/cloud_point.hpp"
 #include "core/plane_map.hpp"
 #include "core/trajectory.hpp"
 
@@ -31,6 +32,10 @@ std::string planes_json(const PlaneMap& map, const std::optional<Sightings>& sig
 /// the plane's colour and normal at its vertices; the trajectory as further vertices, joined by edges
 /// (element edge). Comments tell ids, labels and numbers of faces in their order. Metres.
 std::string planes_ply(const PlaneMap& map, const Trajectory& trajectory);
+
+/// Binary little-endian PLY of points: x, y, z (float, metres), red, green, blue (uchar) and plane (int; the
+/// id, -1: none), in the points' own frame, which the comment names.
+std::string points_ply(const std::vector<CloudPoint>& points, const std::string& comment);
 
 /// Wavefront OBJ, y up as its readers take it: an object a plane, named plane_<id>_<label>, of triangles with
 /// the plane's normal; its material plane_<id> is in the MTL file of planes_mtl(), which goes beside it under

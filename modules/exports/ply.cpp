@@ -91,4 +91,18 @@ std::string planes_ply(const PlaneMap& map, const Trajectory& trajectory) {
     return ply.bytes();
 }
 
+std::string points_ply(const std::vector<CloudPoint>& points, const std::string& comment) {
+    std::string bytes = "ply\nformat binary_little_endian 1.0\ncomment " + comment + "\nelement vertex " +
+                        std::to_string(points.size()) +
+                        "\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\n"
+                        "property uchar green\nproperty uchar blue\nproperty int plane\nend_header\n";
+    for (const CloudPoint& point : points) {
+        for (const float value : {point.position.x(), point.position.y(), point.position.z()})
+            put(bytes, value);
+        for (const std::uint8_t value : {point.color.r, point.color.g, point.color.b}) put(bytes, value);
+        put(bytes, std::int32_t{point.plane});
+    }
+    return bytes;
+}
+
 }  // namespace planemap::exports

@@ -50,6 +50,7 @@ class Census {
         OctomapSizes sizes;
         sizes.memory_bytes = whole_.memory_bytes(tree_);
         sizes.bt_bytes = likely_.bt_bytes(tree_);
+        sizes.bt_nodes = likely_.count();
         sizes.bt_loaded_memory_bytes = likely_.memory_bytes(tree_);
         sizes.bt_occupied_bytes = occupied_.bt_bytes(tree_);
         // A float and a byte that says which children there are.

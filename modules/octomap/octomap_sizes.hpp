@@ -16,6 +16,7 @@ namespace planemap::octomap {
 struct OctomapSizes {
     std::size_t memory_bytes = 0;  ///< OctoMap's own OcTree::memoryUsage() of the tree that is built
     std::size_t bt_bytes = 0;      ///< of the binary, maximum likelihood file
+    std::size_t bt_nodes = 0;      ///< of the tree in that file, the root too
     std::size_t bt_loaded_memory_bytes = 0;  ///< OcTree::memoryUsage() of that file when it is read again
     std::size_t bt_occupied_bytes = 0;  ///< of a binary file with the occupied space only, free space left
                                         ///< out as if it were not known
@@ -27,7 +28,7 @@ struct OctomapSizes {
 };
 
 /// Counts one pass over the tree; nothing is copied or written. Precondition: the tree is pruned and its
-/// inner nodes are up to date.
+/// inner nodes are up to date; what is said of the .bt files is right without.
 OctomapSizes sizes_of(const ::octomap::OcTree& tree);
 
 /// The bytes of a .bt file: maximum likelihood, pruned.

@@ -5,6 +5,7 @@
 
 #include <functional>
 
+#include "core/cloud_point.hpp"
 #include "evaluate/room.hpp"
 
 namespace planemap::evaluation {
@@ -55,7 +56,7 @@ TEST(Soundness, AWallAtItsPlaceIsSound) {
     const Soundness sound = soundness(map_of_faces({wall(2, 2, 2)}), times(view, 3));
     EXPECT_EQ(sound.doubled_share(), 0.0);
     EXPECT_EQ(sound.floating_share(), 0.0);
-    EXPECT_EQ(sound.explained_share(), 1.0);
+    EXPECT_EQ(sound.counts.share_of(&ReadingCounts::explained), 1.0);
     EXPECT_NEAR(sound.residuals.rms_m, 0, 1e-6);
     EXPECT_NEAR(sound.area_m2, 16, 0.1);
     EXPECT_NEAR(sound.seen_m2, 2 * 2 * 160. * 120 / 131 / 131, 0.2);
@@ -105,7 +106,7 @@ TEST(Soundness, WhatWasLookedThroughFloats) {
     const PlaneMap map = map_of_faces({wall(2)});
     std::vector<PosedView> views = times(behind, 3);
     EXPECT_EQ(soundness(map, views).floating_share(), 1.0);
-    EXPECT_EQ(soundness(map, views).explained, 0);
+    EXPECT_EQ(soundness(map, views).counts.explained, 0);
     for (const PosedView& view : times(on_it, 3)) views.push_back(view);
     EXPECT_EQ(soundness(map, views).floating_share(), 0.0);  // half of the views is not more than half
     EXPECT_EQ(soundness(map, times(wall_at(2.04), 3)).floating_share(), 0.0);
@@ -121,14 +122,60 @@ TEST(Soundness, UnseenAndFromBehindCountsNowhere) {
         EXPECT_FALSE(sound.floating_share());
     }
     EXPECT_FALSE(soundness({}, {}).doubled_share());
-    EXPECT_FALSE(soundness({}, {}).explained_share());
-    EXPECT_EQ(soundness({}, times(view, 1)).explained_share(), 0.0);
+    EXPECT_FALSE(soundness({}, {}).counts.share_of(&ReadingCounts::explained));
+    EXPECT_EQ(soundness({}, times(view, 1)).counts.share_of(&ReadingCounts::explained), 0.0);
 }
 
 TEST(Soundness, BiasIsPositiveBeforeThePlane) {
     const Soundness sound = soundness(map_of_faces({wall(2, 2, 2)}), times(wall_at(1.99), 1));
     EXPECT_NEAR(sound.residuals.mean_m, 0.01, 1e-6);
     EXPECT_NEAR(sound.planes[0].residuals.mean_m, 0.01, 1e-6);
+}
+
+/// A wall of which the left half of the views is 3 cm behind it, and a quarter 1.2 cm.
+TEST(Soundness, CountsReadingsByTheirDistanceAndDepth) {
+    const DepthView view = view_of([](int u, int) { return u < 80 ? 1.03 : u < 120 ? 1.012 : 1.0; });
+    const Soundness sound = soundness(map_of_faces({wall(1, 2, 2)}), times(view, 2));
+    ASSERT_EQ(sound.counts.readings, 2 * 160 * 120);
+    EXPECT_EQ(sound.counts.share_of(&ReadingCounts::close), 0.5);
+    EXPECT_EQ(sound.counts.share_of(&ReadingCounts::explained), 0.5);  // 3 sigma are 6 mm: 1.5 cm
+    EXPECT_EQ(sound.counts.share_of(&ReadingCounts::near), 1.0);
+    ASSERT_EQ(sound.by_range.size(), 1u);
+    EXPECT_EQ(sound.by_range[0].counts.readings, sound.counts.readings);
+    const DepthView two = view_of([](int u, int) { return u < 40 ? 1.5 : 3.5; });
+    const Soundness ranges = soundness(map_of_faces({wall(1.5, 2, 2)}), times(two, 1));
+    ASSERT_EQ(ranges.by_range.size(), 2u);
+    EXPECT_EQ(ranges.by_range[0].counts.share_of(&ReadingCounts::close), 1.0);
+    EXPECT_EQ(ranges.by_range[1].counts.share_of(&ReadingCounts::close), 0.0);
+    EXPECT_EQ(ranges.by_range[1].counts.readings, 120 * 120);
+}
+
+/// Of a wall of 4 m x 4 m one view sees 2.44 m x 1.83 m, with a reading on it in the right half of that.
+TEST(Soundness, OutlinesAreConfirmedWhereAReadingIsOnThem) {
+    const DepthView view = view_of([](int u, int) { return u < 80 ? 2.2 : 2; });
+    const Soundness sound = soundness(map_of_faces({wall(2, 2, 2)}), times(view, 1));
+    EXPECT_NEAR(*sound.confirmed_share(), 0.5 * 4 * 160. * 120 / 131 / 131 / 16, 0.005);
+    // Where one of two views has it, it is confirmed.
+    const DepthView other = view_of([](int u, int) { return u < 80 ? 2 : 2.2; });
+    const Soundness both =
+        soundness(map_of_faces({wall(2, 2, 2)}), {{&view, Pose::Identity()}, {&other, Pose::Identity()}});
+    EXPECT_NEAR(*both.confirmed_share(), 4 * 160. * 120 / 131 / 131 / 16, 0.01);
+    EXPECT_FALSE(soundness({}, times(view, 1)).confirmed_share());
+}
+
+TEST(Soundness, TheListenerHearsEveryReadingAsItWasJudged) {
+    const DepthView view = view_of([](int u, int) { return u < 40 ? 1.0 : u < 80 ? 1.03 : 1.2; });
+    std::int64_t readings = 0, explained = 0, near = 0;
+    soundness(map_of_faces({wall(1, 2, 2)}), times(view, 2), {}, [&](const JudgedReading& reading) {
+        ++readings;
+        explained += reading.is_explained;
+        near += reading.face != nullptr;
+        EXPECT_EQ(reading.face == nullptr, reading.range_m > 1.1);
+        EXPECT_NEAR(reading.distance_m, reading.face != nullptr ? 1 - reading.p_world.z() : 0, 1e-6);
+    });
+    EXPECT_EQ(readings, 2 * 160 * 120);
+    EXPECT_EQ(explained, readings / 4);
+    EXPECT_EQ(near, readings / 2);
 }
 
 TEST(SpreadViews, KeepsFewOfManyEvenly) {
@@ -141,6 +188,47 @@ TEST(SpreadViews, KeepsFewOfManyEvenly) {
     EXPECT_GE(kept.size(), SpreadViews::kMost / 2);
     for (std::size_t i = 1; i < kept.size(); ++i)
         EXPECT_EQ(kept[i].utime - kept[i - 1].utime, kept[1].utime - kept[0].utime);
+}
+
+/// A colour camera 10 cm beside the depth camera: a reading has the colour of what it is, not of its pixel.
+TEST(DepthView, ReadingsHaveTheirColour) {
+    CameraInfo info = sensor();
+    info.color = {320, 240, 262, 262, 159.5, 119.5};
+    info.registered = false;
+    info.color_from_depth.translation().x() = -0.1;
+    DepthImage depth(160, 120, 1000);
+    depth(0, 0) = 0;
+    RgbImage picture(80, 60);  // a fourth of the colour image: red tells the column, green the row
+    for (int v = 0; v < 60; ++v)
+        for (int u = 0; u < 80; ++u)
+            picture(u, v) = {static_cast<std::uint8_t>(u), static_cast<std::uint8_t>(v), 7};
+    const DepthView view(depth, info, 0, 160, picture);
+    EXPECT_EQ(view.readings, 160u * 120 - 1);
+    for (const int u : {40, 80, 159}) {
+        // Twice the pixel, moved by 262 * 0.1 / 1 pixels; then four to one.
+        const int x = static_cast<int>(std::floor((2 * (u + 0.5) - 26.2) / 4));
+        EXPECT_EQ(view.colors(u, 60).r, x) << u;
+        EXPECT_EQ(view.colors(u, 60).g, 30);
+    }
+    EXPECT_EQ(view.colors(5, 60), CloudPoint::kNoColor) << "beside the colour image";
+    EXPECT_EQ(view.colors(0, 0), CloudPoint::kNoColor) << "no reading";
+    EXPECT_EQ(DepthView(depth, info, 0, 160).colors(80, 60), CloudPoint::kNoColor);
+}
+
+TEST(SpreadViews, AsksForPicturesOfWhatItKeepsAlone) {
+    CameraInfo info = sensor();
+    info.color.width = 640;
+    info.color.height = 480;
+    int asked = 0;
+    SpreadViews views;
+    for (int i = 0; i < 1000; ++i) {
+        views.add(DepthImage(160, 120, 1000), info, i, [&](int reduction) -> std::optional<RgbImage> {
+            ++asked;
+            EXPECT_EQ(reduction, 4);
+            return std::nullopt;
+        });
+    }
+    EXPECT_LT(asked, 300);
 }
 
 TEST(DepthView, ThinnedPixelsLookWhereTheyDid) {

@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstring>
 #include <limits>
 #include <sstream>
 
@@ -105,6 +107,34 @@ TEST(PlanesPly, StandsUprightAndCarriesTheTrajectory) {
             }
         }
     }
+}
+
+TEST(PointsPly, HasEachPointWithItsColourAndPlane) {
+    const std::vector<CloudPoint> points{{{1, 2, 3}, {4, 5, 6}, 7}, {{-1, 0.5f, 0}, {255, 0, 128}, -1}};
+    const std::string bytes = points_ply(points, "of a test");
+    const std::string end = "end_header\n";
+    const std::size_t at = bytes.find(end) + end.size();
+    EXPECT_EQ(
+        bytes.substr(0, at),
+        "ply\nformat binary_little_endian 1.0\ncomment of a test\nelement vertex 2\n"
+        "property float x\nproperty float y\nproperty float z\n"
+        "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty int plane\nend_header\n");
+    ASSERT_EQ(bytes.size(), at + 2 * 19);
+    for (std::size_t i = 0; i < 2; ++i) {
+        const char* vertex = bytes.data() + at + 19 * i;
+        std::array<float, 3> position;
+        std::int32_t plane = 0;
+        std::memcpy(position.data(), vertex, 12);
+        std::memcpy(&plane, vertex + 15, 4);
+        EXPECT_EQ(Eigen::Vector3f(position[0], position[1], position[2]), points[i].position);
+        EXPECT_EQ(static_cast<std::uint8_t>(vertex[12]), points[i].color.r);
+        EXPECT_EQ(static_cast<std::uint8_t>(vertex[14]), points[i].color.b);
+        EXPECT_EQ(plane, points[i].plane);
+    }
+    EXPECT_THAT(
+        points_ply({}, "none"),
+        ::testing::EndsWith("element vertex 0\n" + bytes.substr(bytes.find("property float x"),
+                                                                at - bytes.find("property float x"))));
 }
 
 }  // namespace

@@ -44,6 +44,17 @@ std::unique_ptr<::octomap::OcTree> loaded(const std::string& bt) {
     return tree;
 }
 
+TEST(OctomapSizes, OfTheFilesNeedNoPruning) {
+    ::octomap::OcTree tree = random_tree(4);
+    const OctomapSizes pruned = sizes_of(tree);
+    tree.expand();
+    const OctomapSizes expanded = sizes_of(tree);
+    EXPECT_GT(expanded.nodes, pruned.nodes);
+    EXPECT_EQ(expanded.bt_nodes, pruned.bt_nodes);
+    EXPECT_EQ(expanded.bt_bytes, pruned.bt_bytes);
+    EXPECT_EQ(expanded.bt_occupied_bytes, pruned.bt_occupied_bytes);
+}
+
 TEST(OctomapSizes, AreThoseThatOctoMapItselfGives) {
     for (const std::uint64_t seed : {1, 2, 3}) {
         const ::octomap::OcTree tree = random_tree(seed);
@@ -52,6 +63,7 @@ TEST(OctomapSizes, AreThoseThatOctoMapItselfGives) {
         EXPECT_EQ(sizes.nodes, tree.size());
         EXPECT_EQ(sizes.leaves, tree.getNumLeafNodes());
         EXPECT_EQ(sizes.bt_bytes, bt_of(tree).size());
+        EXPECT_EQ(sizes.bt_nodes, loaded(bt_of(tree))->size());
         EXPECT_EQ(sizes.ot_bytes, ot_of(tree).size());
         EXPECT_EQ(sizes.bt_loaded_memory_bytes, loaded(bt_of(tree))->memoryUsage());
         EXPECT_LT(sizes.bt_loaded_memory_bytes, sizes.memory_bytes);

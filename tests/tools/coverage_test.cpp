@@ -52,6 +52,14 @@ TEST(Coverage, ReachesOneLeafSize) {
     EXPECT_EQ(coverage_of(far, layer(0, 1), kLeaf).area_supported, 0);
 }
 
+TEST(Coverage, AtHalfALeafReachesHalfAsFar) {
+    for (const auto& [z, explained] : {std::pair(0.024, 1.0), std::pair(0.026, 0.0), std::pair(0.051, 0.0)})
+        EXPECT_EQ(coverage_of(map_of({square(z)}), layer(0, 1), kLeaf).leaves_explained_half, explained) << z;
+    // The nearest of two planes counts.
+    EXPECT_EQ(coverage_of(map_of({square(0.01), square(0.04)}), layer(0, 1), kLeaf).leaves_explained_half, 1);
+    EXPECT_EQ(coverage_of(map_of({square(0.04), square(0.01)}), layer(0, 1), kLeaf).leaves_explained_half, 1);
+}
+
 TEST(Coverage, CountsTheOutlineAndNotTheBox) {
     const PlaneMap map = map_of({square(0, true)});
     const Coverage inside = coverage_of(map, layer(0, 0.4), kLeaf);
@@ -71,11 +79,15 @@ TEST(Coverage, UnsupportedAreaShows) {
 /// By the definition: each leaf against each plane, each sample of each plane against each leaf.
 Coverage by_definition(const PlaneMap& map, const std::vector<Eigen::Vector3d>& leaves) {
     Coverage coverage;
-    double explained = 0, samples = 0, supported = 0;
+    double explained = 0, half = 0, samples = 0, supported = 0;
     for (const Eigen::Vector3d& leaf : leaves) {
-        explained += std::any_of(map.planes.begin(), map.planes.end(), [&](const MapPlane& plane) {
-            return distance(plane.region(), leaf) <= kLeaf;
-        });
+        const auto within = [&](double reach) {
+            return std::any_of(map.planes.begin(), map.planes.end(), [&](const MapPlane& plane) {
+                return distance(plane.region(), leaf) <= reach;
+            });
+        };
+        explained += within(kLeaf);
+        half += within(kLeaf / 2);
     }
     for (const MapPlane& plane : map.planes) {
         const PlanarRegion region = plane.region();
@@ -94,6 +106,7 @@ Coverage by_definition(const PlaneMap& map, const std::vector<Eigen::Vector3d>& 
         }
     }
     coverage.leaves_explained = leaves.empty() ? 0 : explained / static_cast<double>(leaves.size());
+    coverage.leaves_explained_half = leaves.empty() ? 0 : half / static_cast<double>(leaves.size());
     coverage.area_supported = samples > 0 ? supported / samples : 0;
     return coverage;
 }
@@ -138,6 +151,7 @@ TEST(Coverage, IsTheDefinitionsToTheLastSample) {
         }
         const Coverage ours = coverage_of(map, leaves, kLeaf), expected = by_definition(map, leaves);
         EXPECT_EQ(ours.leaves_explained, expected.leaves_explained);
+        EXPECT_EQ(ours.leaves_explained_half, expected.leaves_explained_half);
         EXPECT_EQ(ours.area_supported, expected.area_supported);
         EXPECT_GT(expected.leaves_explained, 0.2);
         EXPECT_GT(expected.area_supported, 0.05);

@@ -48,7 +48,10 @@ TEST_F(ExportTest, GivesWhatTheRunGave) {
     for (const char* key : {"plane_map_memory", "plane_map_message"})
         EXPECT_EQ(of_run.at("sizes_bytes").at(key), exported.at("sizes_bytes").at(key)) << key;
     EXPECT_EQ(exported.at("tracked"), of_run.at("tracked"));
-    EXPECT_TRUE(exported.at("frames").is_null());
+    for (const char* key : {"frames", "accuracy_beside_size", "growth"})
+        EXPECT_TRUE(exported.at(key).is_null()) << key;
+    EXPECT_TRUE(exported.at("coverage").at("within_2cm").is_null());
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "out/points.ply"));
     EXPECT_THAT(outcome.out, HasSubstr("are not known"));
     EXPECT_EQ(run("planemap-report", path("out")).exit_code, 0);
     EXPECT_FALSE(std::filesystem::exists(folder_ / "out/.partial"));

@@ -9,11 +9,12 @@
 #include "core/option_list.hpp"
 #include "core/version.hpp"
 #include "messages/flags.hpp"
+#include "results/host.hpp"
 
 namespace planemap {
 namespace {
 
-TEST(RunInfo, HasVersionDateSeedAndOptions) {
+TEST(RunInfo, HasVersionDateHostSeedAndOptions) {
     std::optional<std::uint64_t> seed;
     std::string method = "cells", empty;
     double length_m = 0.1;
@@ -30,6 +31,8 @@ TEST(RunInfo, HasVersionDateSeedAndOptions) {
     EXPECT_EQ(info["version"], version());
     EXPECT_THAT(info["date"].get<std::string>(),
                 testing::MatchesRegex("20[0-9]{2}-[0-9]{2}-[0-9]{2}T[0-9]{2}:[0-9]{2}:[0-9]{2}Z"));
+    EXPECT_EQ(info["host"], host_name().value());
+    EXPECT_TRUE(info["cpu"].is_null() || !info["cpu"].get<std::string>().empty());
     EXPECT_TRUE(info["seed"].is_null());
     EXPECT_EQ(info["options"].dump(),
               R"({"seed":null,"camera":null,"quiet":true,"map-method":"cells","map-length-m":0.1})");

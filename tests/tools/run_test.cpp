@@ -30,6 +30,39 @@ class RunTest : public test::Programs {
     using Result = Outcome;
 };
 
+/// A run of 60 frames tells of each how the maps grew, and the points say what the shares say.
+void expect_points_and_growth(const Json& report, const Json& again, const std::string& ply) {
+    const std::string end = "end_header\n";
+    const std::size_t at = ply.find(end) + end.size(), count = (ply.size() - at) / 19;
+    ASSERT_GT(count, 100000u);
+    EXPECT_EQ((ply.size() - at) % 19, 0u);
+    std::size_t explained = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        std::int32_t plane = 0;
+        std::memcpy(&plane, ply.data() + at + 19 * i + 15, 4);
+        explained += plane >= 0;
+    }
+    const Json& coverage = report.at("coverage");
+    EXPECT_NEAR(coverage.at("within_band").get<double>(),
+                static_cast<double>(explained) / static_cast<double>(count), 0.005);
+    EXPECT_EQ(coverage.at("within_band"), report.at("explained_points"));
+    EXPECT_EQ(coverage.at("within_5cm"), report.at("explained_points_5cm"));
+    EXPECT_LE(coverage.at("leaves_explained_half").get<double>(),
+              coverage.at("leaves_explained").get<double>());
+    EXPECT_GT(coverage.at("outline_seen_within_band").get<double>(), 0.5);
+    EXPECT_EQ(coverage, again.at("coverage"));
+    const Json& accuracy = report.at("accuracy_beside_size");
+    EXPECT_EQ(accuracy, again.at("accuracy_beside_size"));
+    EXPECT_GT(accuracy.at("readings"), 0);
+    const Json& growth = report.at("growth");
+    for (const auto& [key, values] : growth.items()) EXPECT_EQ(values.size(), 60u) << key;
+    for (const char* key : {"time_s", "planes", "map_bytes", "octomap_nodes", "octomap_bytes"})
+        EXPECT_EQ(growth.at(key), again.at("growth").at(key)) << key;
+    EXPECT_EQ(growth.at("map_bytes").back(), report.at("sizes_bytes").at("plane_map_message"));
+    EXPECT_EQ(growth.at("octomap_bytes").back(), report.at("sizes_bytes").at("octomap_bt"));
+    EXPECT_EQ(growth.at("planes").back(), report.at("planes"));
+}
+
 TEST_F(RunTest, WritesEverythingAndTheSameBytesAgain) {
     for (const char* output : {"a", "b"}) {
         const Result result = run("planemap-run", "'sim:office?frames=60' --output " + path(output));
@@ -38,7 +71,7 @@ TEST_F(RunTest, WritesEverythingAndTheSameBytesAgain) {
     }
     for (const char* file : {"trajectory.txt", "planes.json", "planes.ply", "planes.obj", "planes.mtl",
                              "planes.glb", "floor_plan.geojson", "plane_map.lcmlog", "octomap.bt", "map.svg",
-                             "overhead.svg", "groundtruth.txt", "planes_truth.json"}) {
+                             "overhead.svg", "points.ply", "groundtruth.txt", "planes_truth.json"}) {
         EXPECT_EQ(read_file(folder_ / "a" / file), read_file(folder_ / "b" / file)) << file;
     }
     const Json r = report("a");
@@ -67,6 +100,7 @@ TEST_F(RunTest, WritesEverythingAndTheSameBytesAgain) {
         EXPECT_LE(r.at("coverage").at(key).get<double>(), 1.0) << key;
     }
     EXPECT_LT(r.at("accuracy").at("ate_rmse_m").get<double>(), 0.05);
+    expect_points_and_growth(r, report("b"), read_file(folder_ / "a" / "points.ply"));
 
     messages::LogReader log(folder_ / "a" / "plane_map.lcmlog");
     messages::LogEvent event;

@@ -1,19 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "benchmark/build_info.hpp"
 
-#include <fstream>
+#include "results/host.hpp"
 
 namespace planemap::benchmark {
 
 namespace {
-
-std::string cpu_model() {
-    std::ifstream file("/proc/cpuinfo");
-    for (std::string line; std::getline(file, line);) {
-        if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
-    }
-    return "unknown";
-}
 
 /// Of those that the project's kernels or its libraries choose between when they run.
 std::string vector_instructions() {
@@ -44,7 +36,8 @@ constexpr bool kOptimised = false;
 }  // namespace
 
 std::string build_info(const std::string& peers) {
-    std::string text = "CPU       " + cpu_model() + " (" + vector_instructions() + "), one thread\n";
+    std::string text =
+        "CPU       " + cpu_model().value_or("unknown") + " (" + vector_instructions() + "), one thread\n";
     text += std::string("compiler  GCC-compatible ") + __VERSION__ + ", " + PLANEMAP_BUILD_FLAGS + "\n";
     text += "peers     " + peers + "\n";
     if (!kOptimised) text += "WARNING   this build is not optimised: its times mean nothing\n";

@@ -2,11 +2,15 @@
 #include "evaluate/depth_views.hpp"
 
 #include <algorithm>
+#include <cmath>
+
+#include "core/cloud_point.hpp"
 
 namespace planemap::evaluation {
 
-DepthView::DepthView(const DepthImage& depth, const CameraInfo& info, std::int64_t time_us, int columns)
-    : utime(time_us), color_from_depth(info.color_from_depth), noise(info.noise) {
+DepthView::DepthView(const DepthImage& depth, const CameraInfo& info, std::int64_t time_us, int columns,
+                     const std::optional<RgbImage>& picture)
+    : utime(time_us), color_from_depth(info.color_from_depth), noise(info.noise), readings(0) {
     const int stride = std::max(1, (depth.width + columns - 1) / columns), first = stride / 2;
     const auto count = [&](int size) { return (size - first + stride - 1) / stride; };
     metres = Image<float>(count(depth.width), count(depth.height));
@@ -21,26 +25,39 @@ DepthView::DepthView(const DepthImage& depth, const CameraInfo& info, std::int64
         for (int u = 0; u < metres.width; ++u) {
             const std::uint16_t raw = depth(first + u * stride, first + v * stride);
             const double z = info.metres(raw);
-            if (is_valid_depth(raw) && z >= info.depth_min_m && z <= info.depth_max_m)
-                metres(u, v) = static_cast<float>(z);
+            if (!is_valid_depth(raw) || z < info.depth_min_m || z > info.depth_max_m) continue;
+            metres(u, v) = static_cast<float>(z);
+            ++readings;
+        }
+    }
+    colors = Image<Rgb>(metres.width, metres.height, CloudPoint::kNoColor);
+    if (picture) take_colors(*picture, info.color);
+}
+
+void DepthView::take_colors(const RgbImage& picture, const PinholeCamera& color_camera) {
+    const double across = static_cast<double>(picture.width) / color_camera.width,
+                 down = static_cast<double>(picture.height) / color_camera.height;
+    for (int v = 0; v < metres.height; ++v) {
+        for (int u = 0; u < metres.width; ++u) {
+            const double z = static_cast<double>(metres(u, v));
+            if (z == 0) continue;
+            const Eigen::Vector3d p_color = color_from_depth * camera.unproject(u, v, z);
+            if (p_color.z() <= 0) continue;
+            const Eigen::Vector2d pixel = color_camera.project(p_color);
+            if (!color_camera.sees(pixel)) continue;
+            const int x = static_cast<int>(std::floor((pixel.x() + 0.5) * across)),
+                      y = static_cast<int>(std::floor((pixel.y() + 0.5) * down));
+            if (picture.contains(x, y)) colors(u, v) = picture(x, y);
         }
     }
 }
 
-void SpreadViews::add(const DepthImage& depth, const CameraInfo& info, std::int64_t time_us) {
-    const std::int64_t number = frames_++;
-    if (number % every_ != 0) return;
-    if (views_.size() == kMost) {
-        std::size_t kept = 0;
-        for (std::size_t i = 0; i < views_.size(); i += 2) {
-            if (kept != i) views_[kept] = std::move(views_[i]);
-            ++kept;
-        }
-        views_.erase(views_.begin() + static_cast<std::ptrdiff_t>(kept), views_.end());
-        every_ *= 2;
-        if (number % every_ != 0) return;
-    }
-    views_.emplace_back(depth, info, time_us, kColumns);
+void SpreadViews::add(const DepthImage& depth, const CameraInfo& info, std::int64_t time_us,
+                      const Picture& picture) {
+    if (!views_.wants_next()) return;
+    int reduction = 8;  // no smaller than the view
+    while (reduction > 1 && info.color.width < reduction * kColumns) reduction /= 2;
+    views_.add(DepthView(depth, info, time_us, kColumns, picture ? picture(reduction) : std::nullopt));
 }
 
 }  // namespace planemap::evaluation

@@ -3,10 +3,13 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <vector>
 
 #include "core/camera.hpp"
 #include "core/image.hpp"
+#include "evaluate/spread.hpp"
 
 namespace planemap::evaluation {
 
@@ -16,26 +19,36 @@ struct DepthView {
     PinholeCamera camera;    ///< of the thinned image
     Pose color_from_depth = Pose::Identity();
     DepthNoise noise;
-    Image<float> metres;  ///< along the optical axis; 0: no reading that the sensor is trusted with
+    Image<float> metres;   ///< along the optical axis; 0: no reading that the sensor is trusted with
+    Image<Rgb> colors;     ///< of the readings; CloudPoint::kNoColor where the colour camera does not look
+    std::size_t readings;  ///< that are not 0
 
-    /// Thinned to at most `columns` columns. Precondition: the image is the depth camera's.
-    DepthView(const DepthImage& depth, const CameraInfo& info, std::int64_t time_us, int columns);
+    /// Thinned to at most `columns` columns. The picture is the colour camera's, of any size. Precondition:
+    /// the depth image is the depth camera's.
+    DepthView(const DepthImage& depth, const CameraInfo& info, std::int64_t time_us, int columns,
+              const std::optional<RgbImage>& picture = std::nullopt);
+
+  private:
+    void take_colors(const RgbImage& picture, const PinholeCamera& color_camera);
 };
 
-/// Views spread evenly over a run of any length: every frame until there are `most`, then every second one
-/// and so on, the earlier ones thinned out alike. So at least half of `most` are kept of a long run.
+/// Views spread evenly over a run of any length (Spread).
 class SpreadViews {
   public:
     static constexpr std::size_t kMost = 100;
     static constexpr int kColumns = 160;
 
-    /// Takes every frame of the run, in order.
-    void add(const DepthImage& depth, const CameraInfo& info, std::int64_t time_us);
-    const std::vector<DepthView>& views() const { return views_; }
+    /// A small picture of the colours, one pixel for `reduction` x `reduction` (1, 2, 4 or 8); nothing
+    /// without colour.
+    using Picture = std::function<std::optional<RgbImage>(int reduction)>;
+
+    /// Takes every frame of the run, in order; its picture is asked for only if it is kept.
+    void add(const DepthImage& depth, const CameraInfo& info, std::int64_t time_us,
+             const Picture& picture = {});
+    const std::vector<DepthView>& views() const { return views_.kept(); }
 
   private:
-    std::vector<DepthView> views_;
-    std::int64_t frames_ = 0, every_ = 1;
+    Spread<DepthView> views_{kMost};
 };
 
 }  // namespace planemap::evaluation

@@ -7,7 +7,7 @@
 
 #include "core/angle.hpp"
 #include "evaluate/edge_judge.hpp"
-#include "evaluate/plane_raster.hpp"
+#include "evaluate/map_faces.hpp"
 #include "evaluate/statistics.hpp"
 
 namespace planemap::evaluation {
@@ -20,36 +20,6 @@ constexpr double kApart = 6;     // and of two that noise cannot take for each o
 constexpr int kLeastSteps = 10;  // from one to the other in one view
 constexpr int kStep_px = 2;      // at most, of a thinned view
 
-/// A plane of the map as it is asked.
-struct Face {
-    Plane plane;
-    Pose plane_from_world, world_from_plane;
-    PlaneRaster raster;
-    double reach = 0;  ///< of the outline from its frame's origin, metres
-
-    bool covers(const Eigen::Vector3d& p_world) const {
-        const Eigen::Vector3d p = plane_from_world * p_world;
-        return raster.at(cell_of(p.x()), cell_of(p.y()));
-    }
-    static int cell_of(double metres) { return static_cast<int>(std::floor(metres / kCell_m)); }
-};
-
-std::vector<Face> faces_of(const PlaneMap& map) {
-    std::vector<Face> faces;
-    for (const MapPlane& plane : map.planes) {
-        Face face;
-        face.plane = plane.plane();
-        face.world_from_plane = plane.world_from_plane();
-        face.plane_from_world = face.world_from_plane.inverse(Eigen::Isometry);
-        const Outline outline = plane.outline.rings();
-        face.raster = rasterised(outline);
-        for (const Ring& ring : outline.rings)
-            for (const Eigen::Vector2d& v : ring) face.reach = std::max(face.reach, v.norm());
-        faces.push_back(std::move(face));
-    }
-    return faces;
-}
-
 /// Two planes that may be one surface, the smaller first.
 struct Pair {
     std::size_t small = 0, large = 0;
@@ -58,7 +28,7 @@ struct Pair {
     Image<std::uint8_t> on;  ///< of the view at hand: 1, 2: the reading is on the smaller, larger one
 };
 
-std::vector<Eigen::Vector2i> common_cells(const Face& small, const Face& large, double reach_m) {
+std::vector<Eigen::Vector2i> common_cells(const MapFace& small, const MapFace& large, double reach_m) {
     std::vector<Eigen::Vector2i> cells;
     for_each_cell(small.raster, [&](int x, int y) {
         const Eigen::Vector2d middle = small.raster.cell_centre(x, y);
@@ -68,7 +38,7 @@ std::vector<Eigen::Vector2i> common_cells(const Face& small, const Face& large, 
     return cells;
 }
 
-std::vector<Pair> pairs_of(const std::vector<Face>& faces, const SoundnessLimits& limits) {
+std::vector<Pair> pairs_of(const std::vector<MapFace>& faces, const SoundnessLimits& limits) {
     std::vector<Pair> pairs;
     for (std::size_t i = 0; i < faces.size(); ++i) {
         for (std::size_t j = i + 1; j < faces.size(); ++j) {
@@ -107,8 +77,9 @@ struct Sums {
 /// Goes through the readings of all views.
 class Readings {
   public:
-    Readings(const std::vector<Face>& faces, std::vector<Pair>& pairs, const SoundnessLimits& limits)
-        : faces_(faces), pairs_(pairs), limits_(limits), of_planes_(faces.size()) {}
+    Readings(const std::vector<MapFace>& faces, std::vector<Pair>& pairs, const SoundnessLimits& limits,
+             const ReadingListener& listener)
+        : faces_(faces), pairs_(pairs), limits_(limits), listener_(listener), of_planes_(faces.size()) {}
 
     void add(const PosedView& posed) {
         const DepthView& view = *posed.view;
@@ -120,7 +91,7 @@ class Readings {
                 if (z == 0) continue;
                 const Eigen::Vector3d p = world_from_depth * view.camera.unproject(u, v, z);
                 const double sigma = view.noise.sigma(z);
-                explain(p, z, sigma);
+                explain({p, view.colors(u, v), z}, sigma);
                 tell_apart(u, v, p, sigma);
             }
         }
@@ -128,42 +99,48 @@ class Readings {
     }
 
     void report(Soundness& soundness) const {
-        soundness.readings = readings_;
-        soundness.explained = explained_;
-        soundness.near = near_;
-        soundness.residuals = all_.residuals();
         for (std::size_t i = 0; i < of_planes_.size(); ++i)
             soundness.planes[i].residuals = of_planes_[i].residuals();
-        for (const auto& [metre, sums] : by_range_)
-            soundness.by_range.push_back({metre * 1.0, metre + 1.0, sums.residuals()});
+        for (const auto& [metre, range] : by_range_) {
+            soundness.by_range.push_back(
+                {metre * 1.0, metre + 1.0, range.counts, range.explained.residuals()});
+            soundness.counts += range.counts;
+        }
+        soundness.residuals = all_.residuals();
     }
 
   private:
-    void explain(const Eigen::Vector3d& p, double z, double sigma) {
-        ++readings_;
-        const double reach = std::max(limits_.explained_m, limits_.explained_sigmas * sigma);
-        double nearest = std::max(reach, limits_.near_m), residual = 0;
-        std::size_t best = faces_.size();
-        for (std::size_t i = 0; i < faces_.size(); ++i) {
-            const double distance = faces_[i].plane.signed_distance(p);
-            if (std::abs(distance) > nearest || !faces_[i].covers(p)) continue;
-            nearest = std::abs(distance);
-            residual = distance;
-            best = i;
+    struct Range {
+        ReadingCounts counts;
+        Sums explained;
+    };
+
+    void explain(JudgedReading reading, double sigma) {
+        const double band = limits_.band_m(sigma);
+        const auto nearest = nearest_face(faces_, reading.p_world, std::max(band, limits_.near_m));
+        Range& range = by_range_[static_cast<int>(std::floor(reading.range_m))];
+        ++range.counts.readings;
+        if (nearest) {
+            const double distance = std::abs(nearest->distance_m);
+            reading.face = &faces_[nearest->index];
+            reading.distance_m = nearest->distance_m;
+            reading.is_explained = distance <= band;
+            range.counts.close += distance <= limits_.close_m;
+            range.counts.near += distance <= limits_.near_m;
         }
-        if (best == faces_.size()) return;
-        near_ += nearest <= limits_.near_m;
-        if (nearest > reach) return;
-        ++explained_;
-        all_.add(residual);
-        of_planes_[best].add(residual);
-        by_range_[static_cast<int>(std::floor(z))].add(residual);
+        if (reading.is_explained) {
+            ++range.counts.explained;
+            all_.add(reading.distance_m);
+            of_planes_[nearest->index].add(reading.distance_m);
+            range.explained.add(reading.distance_m);
+        }
+        if (listener_) listener_(reading);
     }
 
     void tell_apart(int u, int v, const Eigen::Vector3d& p, double sigma) {
         for (Pair& pair : pairs_) {
             if (pair.views >= limits_.least_views) continue;
-            const Face &small = faces_[pair.small], &large = faces_[pair.large];
+            const MapFace &small = faces_[pair.small], &large = faces_[pair.large];
             const double to_small = small.plane.signed_distance(p), to_large = large.plane.signed_distance(p);
             if (std::abs(to_small - to_large) < kApart * sigma) continue;
             if (std::abs(to_small) <= kSigmas * sigma && small.covers(p)) pair.on(u, v) = 1;
@@ -187,20 +164,20 @@ class Readings {
         return count;
     }
 
-    const std::vector<Face>& faces_;
+    const std::vector<MapFace>& faces_;
     std::vector<Pair>& pairs_;
     const SoundnessLimits& limits_;
-    std::int64_t readings_ = 0, explained_ = 0, near_ = 0;
+    const ReadingListener& listener_;
     Sums all_;
     std::vector<Sums> of_planes_;
-    std::map<int, Sums> by_range_;
+    std::map<int, Range> by_range_;  ///< by the metre
 };
 
 /// Looks at a plane's cells in all views.
-void look_through(const Face& face, const std::vector<PosedView>& views, const SoundnessLimits& limits,
+void look_through(const MapFace& face, const std::vector<PosedView>& views, const SoundnessLimits& limits,
                   PlaneSoundness& verdict) {
     struct Looks {
-        std::uint16_t seen = 0, behind = 0;
+        std::uint16_t seen = 0, behind = 0, on_it = 0;
     };
     std::vector<Looks> looks(face.raster.mask.cells.size());
     for (const PosedView& posed : views) {
@@ -222,18 +199,21 @@ void look_through(const Face& face, const std::vector<PosedView>& views, const S
             if (z == 0) return;
             Looks& look = looks[face.raster.mask.index(x - face.raster.x0, y - face.raster.y0)];
             ++look.seen;
-            const double behind = -plane.signed_distance(view.camera.unproject(u, v, z));
-            look.behind += behind > std::max(limits.behind_m, limits.behind_sigmas * view.noise.sigma(p.z()));
+            const double before = plane.signed_distance(view.camera.unproject(u, v, z));
+            look.behind +=
+                -before > std::max(limits.behind_m, limits.behind_sigmas * view.noise.sigma(p.z()));
+            look.on_it += std::abs(before) <= limits.band_m(view.noise.sigma(z));
         });
     }
     for (const Looks& look : looks) {
         verdict.seen_m2 += look.seen > 0 ? kCellArea : 0;
         verdict.floating_m2 += 2 * look.behind > look.seen ? kCellArea : 0;
+        verdict.confirmed_m2 += look.on_it > 0 ? kCellArea : 0;
     }
 }
 
 /// Area of the cells of the smaller outlines that another plane says again; each cell once.
-double doubled_area(const std::vector<Face>& faces, const std::vector<Pair>& pairs,
+double doubled_area(const std::vector<MapFace>& faces, const std::vector<Pair>& pairs,
                     const SoundnessLimits& limits) {
     std::vector<std::vector<std::uint8_t>> doubled(faces.size());
     std::size_t count = 0;
@@ -259,15 +239,26 @@ std::optional<double> Soundness::doubled_share() const {
 std::optional<double> Soundness::floating_share() const {
     return share(floating_m2, seen_m2);
 }
-std::optional<double> Soundness::explained_share() const {
-    return share(static_cast<double>(explained), static_cast<double>(readings));
-}
-std::optional<double> Soundness::near_share() const {
-    return share(static_cast<double>(near), static_cast<double>(readings));
+std::optional<double> Soundness::confirmed_share() const {
+    return share(confirmed_m2, area_m2);
 }
 
-Soundness soundness(const PlaneMap& map, const std::vector<PosedView>& views, const SoundnessLimits& limits) {
-    const std::vector<Face> faces = faces_of(map);
+std::optional<double> ReadingCounts::share_of(std::int64_t ReadingCounts::*count) const {
+    return share(static_cast<double>(this->*count), static_cast<double>(readings));
+}
+void ReadingCounts::operator+=(const ReadingCounts& other) {
+    for (const auto count :
+         {&ReadingCounts::readings, &ReadingCounts::close, &ReadingCounts::explained, &ReadingCounts::near})
+        this->*count += other.*count;
+}
+
+double SoundnessLimits::band_m(double sigma_m) const {
+    return std::max(explained_m, explained_sigmas * sigma_m);
+}
+
+Soundness soundness(const PlaneMap& map, const std::vector<PosedView>& views, const SoundnessLimits& limits,
+                    const ReadingListener& listener) {
+    const std::vector<MapFace> faces = faces_of(map);
     std::vector<Pair> pairs = pairs_of(faces, limits);
     Soundness result;
     result.views = views.size();
@@ -279,8 +270,9 @@ Soundness soundness(const PlaneMap& map, const std::vector<PosedView>& views, co
         result.area_m2 += verdict.area_m2;
         result.seen_m2 += verdict.seen_m2;
         result.floating_m2 += verdict.floating_m2;
+        result.confirmed_m2 += verdict.confirmed_m2;
     }
-    Readings readings(faces, pairs, limits);
+    Readings readings(faces, pairs, limits, listener);
     for (const PosedView& view : views) readings.add(view);
     readings.report(result);
     result.doubled_m2 = doubled_area(faces, pairs, limits);

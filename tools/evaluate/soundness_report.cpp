@@ -34,6 +34,12 @@ Json planes_of(const Soundness& soundness) {
     return planes;
 }
 
+void add_shares(const ReadingCounts& counts, Json& json) {
+    json["within_2cm"] = figure(counts.share_of(&ReadingCounts::close));
+    json["within_band"] = figure(counts.share_of(&ReadingCounts::explained));
+    json["within_5cm"] = figure(counts.share_of(&ReadingCounts::near));
+}
+
 std::string percent_text(const Json& share) {
     return share.is_number() ? text("%.1f %%", 100 * share.get<double>()) : "nothing to measure";
 }
@@ -44,22 +50,23 @@ Json soundness_figures(const Soundness& soundness) {
     Json pairs = Json::array(), ranges = Json::array();
     for (const DoubledPair& pair : soundness.doubled)
         pairs.push_back({{"planes", {pair.id_a, pair.id_b}}, {"area_m2", pair.area_m2}});
-    for (const RangeResiduals& range : soundness.by_range) {
+    for (const RangeSoundness& range : soundness.by_range) {
+        if (range.residuals.count == 0) continue;
         Json& row = ranges.emplace_back(Json{{"from_m", range.from_m}, {"to_m", range.to_m}});
         row.update(to_json(range.residuals));
     }
     const bool measured = soundness.residuals.count > 0;
     return {{"doubled_area", figure(soundness.doubled_share())},
             {"floating_area", figure(soundness.floating_share())},
-            {"explained_points", figure(soundness.explained_share())},
-            {"explained_points_5cm", figure(soundness.near_share())},
+            {"explained_points", figure(soundness.counts.share_of(&ReadingCounts::explained))},
+            {"explained_points_5cm", figure(soundness.counts.share_of(&ReadingCounts::near))},
             {"point_to_plane_rms_m", measured ? Json(soundness.residuals.rms_m) : Json(nullptr)},
             {"point_to_plane_bias_m", measured ? Json(soundness.residuals.mean_m) : Json(nullptr)},
             {"outline_to_line_median_m", benchmark::number(nearest_rank(soundness.outline_gaps, 0.5))},
             {"outline_to_line_p90_m", benchmark::number(nearest_rank(soundness.outline_gaps, 0.9))},
             {"soundness",
              {{"views", soundness.views},
-              {"readings", soundness.readings},
+              {"readings", soundness.counts.readings},
               {"area_m2", soundness.area_m2},
               {"doubled_m2", soundness.doubled_m2},
               {"seen_m2", soundness.seen_m2},
@@ -94,6 +101,48 @@ std::string soundness_markdown(const Json& report) {
             1e3 * report.at("point_to_plane_bias_m").get<double>());
     }
     return out;
+}
+
+Json coverage_figures(const Soundness& soundness) {
+    Json figures;
+    add_shares(soundness.counts, figures);
+    figures["by_range"] = Json::array();
+    for (const RangeSoundness& range : soundness.by_range) {
+        Json& row = figures["by_range"].emplace_back(
+            Json{{"from_m", range.from_m}, {"to_m", range.to_m}, {"readings", range.counts.readings}});
+        add_shares(range.counts, row);
+    }
+    figures["outline_seen_within_band"] = figure(soundness.confirmed_share());
+    return figures;
+}
+
+std::string coverage_markdown(const Json& coverage) {
+    if (!coverage.contains("within_2cm") || coverage.at("within_2cm").is_null()) return "";
+    std::string out =
+        "\n## Coverage\n\nShare of the depth readings by their distance to the nearest plane whose outline "
+        "they "
+        "are on:\n\n"
+        "| depth | readings | within 2 cm | within max(1.5 cm, 3 sigma) | within 5 cm |\n"
+        "| --- | ---: | ---: | ---: | ---: |\n";
+    const auto row = [&](const std::string& depth, const std::string& readings, const Json& shares) {
+        out += "| " + depth + " | " + readings + " | ";
+        for (const char* key : {"within_2cm", "within_band", "within_5cm"})
+            out += percent_text(shares.at(key)) + (key == std::string("within_5cm") ? " |\n" : " | ");
+    };
+    std::int64_t all = 0;
+    for (const Json& range : coverage.at("by_range")) {
+        all += range.at("readings").get<std::int64_t>();
+        row(text("%.0f to %.0f m", range.at("from_m").get<double>(), range.at("to_m").get<double>()),
+            range.at("readings").dump(), range);
+    }
+    row("all", std::to_string(all), coverage);
+    out += "\nOf the outlines' area " + percent_text(coverage.at("outline_seen_within_band")) +
+           " was seen with a reading within max(1.5 cm, 3 sigma)";
+    const Json half = coverage.value("leaves_explained_half", Json());
+    if (half.is_number())
+        out += "; of the OctoMap's occupied leaves " + percent_text(half) +
+               " lie within half a leaf of an outline";
+    return out + ".\n";
 }
 
 }  // namespace planemap::evaluation

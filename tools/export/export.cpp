@@ -39,7 +39,7 @@ fs::path trajectory_file(const ExportOptions& options) {
 std::vector<std::string> export_names(const ExportOptions& options, const fs::path& trajectory) {
     std::vector<std::string> names = map_result_names();
     if (!same_file(options.map, options.output / "plane_map.lcmlog")) {
-        names.emplace_back("octomap.bt");
+        for (const char* name : {kOctomapFile, kPointsFile}) names.emplace_back(name);
         return names;
     }
     const bool keeps_trajectory =
@@ -90,7 +90,7 @@ void require_ours(const ExportOptions& options, const std::vector<std::string>& 
 /// The OctoMap of the same session, where it lies beside the map.
 void add_octomap_beside(const ExportOptions& options, const PlaneMap& map, std::vector<std::string>& warnings,
                         Json& report) {
-    const fs::path beside = options.map.parent_path() / "octomap.bt";
+    const fs::path beside = options.map.parent_path() / kOctomapFile;
     std::error_code ignored;
     if (!fs::exists(beside, ignored)) return;
     try {
@@ -115,6 +115,7 @@ Json report_of(const ExportOptions& options, const PlaneMap& map, const Trajecto
     report["complaints"] = Json::array();
     add_map_sizes(map, report);
     add_octomap_beside(options, map, warnings, report);
+    for (const char* key : {"accuracy_beside_size", "growth"}) report[key] = nullptr;
     report["warnings"] = warnings;
     report.update(about);
     return report;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <tuple>
 
@@ -160,13 +161,13 @@ class RowInside {
 class Comparison {
   public:
     Comparison(const std::vector<Eigen::Vector3d>& leaves, double leaf_m)
-        : leaves_(leaves), leaf_m_(leaf_m), cubes_(leaves, leaf_m), explained_(leaves.size(), 0) {}
+        : leaves_(leaves), leaf_m_(leaf_m), cubes_(leaves, leaf_m), apart_m_(leaves.size(), kFar) {}
 
     void add(const PlanarRegion& region) {
         const OutlineIndex outline(region.outline);
         cubes_.find_near(region, leaf_m_, near_);
         for (const std::size_t i : near_)
-            explained_[i] = explained_[i] != 0 || explains(region, outline, leaves_[i]);
+            apart_m_[i] = std::min(apart_m_[i], distance_to(region, outline, leaves_[i]));
         const Raster raster(region.box, leaf_m_ / 2);
         find_supported(region.box, raster);
         count_samples(outline, raster);
@@ -174,24 +175,35 @@ class Comparison {
 
     Coverage coverage() const {
         Coverage coverage;
-        const auto explained = std::count(explained_.begin(), explained_.end(), 1);
-        if (!leaves_.empty())
-            coverage.leaves_explained = static_cast<double>(explained) / static_cast<double>(leaves_.size());
+        if (!leaves_.empty()) {
+            coverage.leaves_explained = share_within(leaf_m_);
+            coverage.leaves_explained_half = share_within(leaf_m_ / 2);
+        }
         if (samples_ > 0)
             coverage.area_supported = static_cast<double>(supported_) / static_cast<double>(samples_);
         return coverage;
     }
 
   private:
-    bool explains(const PlanarRegion& region, const OutlineIndex& outline, const Eigen::Vector3d& p) const {
+    static constexpr double kFar = std::numeric_limits<double>::infinity();
+
+    double share_within(double reach_m) const {
+        const auto count = std::count_if(apart_m_.begin(), apart_m_.end(),
+                                         [&](double apart_m) { return apart_m <= reach_m; });
+        return static_cast<double>(count) / static_cast<double>(leaves_.size());
+    }
+
+    /// Of a leaf to the outline, metres; kFar beyond a leaf size.
+    double distance_to(const PlanarRegion& region, const OutlineIndex& outline,
+                       const Eigen::Vector3d& p) const {
         // Cheap tests before the outline: the plane, then a circle around the box.
         const double off = region.plane.signed_distance(p);
-        if (std::abs(off) > leaf_m_) return false;
+        if (std::abs(off) > leaf_m_) return kFar;
         const double apart = (p - region.box.frame_from_box.translation()).norm();
-        if (apart > region.box.half_extents.norm() + 2 * leaf_m_) return false;
-        if (region.outline.empty()) return distance(region, p) <= leaf_m_;
+        if (apart > region.box.half_extents.norm() + 2 * leaf_m_) return kFar;
+        if (region.outline.empty()) return distance(region, p);
         const Eigen::Vector3d q = region.box.frame_from_box.inverse(Eigen::Isometry) * p;
-        return std::hypot(outline.distance_within(q.head<2>(), leaf_m_), off) <= leaf_m_;
+        return std::hypot(outline.distance_within(q.head<2>(), leaf_m_), off);
     }
 
     /// The samples within one leaf size of one of the leaves near the plane, row by row.
@@ -232,7 +244,7 @@ class Comparison {
     const std::vector<Eigen::Vector3d>& leaves_;
     double leaf_m_;
     LeafCubes cubes_;
-    std::vector<std::uint8_t> explained_;  ///< by leaf
+    std::vector<double> apart_m_;  ///< of each leaf to the nearest outline; kFar beyond a leaf size
     std::size_t samples_ = 0, supported_ = 0;
     // Of the plane at hand.
     std::vector<std::size_t> near_;

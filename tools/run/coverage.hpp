@@ -13,6 +13,7 @@ struct Coverage {
                                   ///< a plane's outline; 0 without leaves
     double area_supported = 0;    ///< share of the outlines' area within one leaf size of the centre of an
                                   ///< occupied leaf; 0 without area
+    double leaves_explained_half = 0;  ///< as leaves_explained, within half a leaf size
 };
 
 /// Compares a plane map with the occupied leaves of an OctoMap: their centres (world frame, metres) and the

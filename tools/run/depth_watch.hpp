@@ -12,7 +12,7 @@
 
 namespace planemap {
 
-/// Keeps depth views spread over the frames of a run.
+/// Keeps depth views, with their colours, spread over the frames of a run.
 class DepthWatch {
   public:
     /// The decoder is the shells' own, so that no frame is decoded twice. It calls this one as long as it

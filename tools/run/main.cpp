@@ -9,6 +9,7 @@
 #include "messages/camera_flag.hpp"
 #include "pipeline/pipeline.hpp"
 #include "run/depth_watch.hpp"
+#include "run/growth.hpp"
 #include "run/input.hpp"
 #include "run/interim.hpp"
 #include "run/outputs.hpp"
@@ -64,13 +65,15 @@ void add_run_flags(messages::Flags& flags, RunOptions& options) {
 
 /// Feeds the input to its end, or until a signal asks to stop. Returns the error that ended it early, if one
 /// did: what was mapped until then is not lost.
-std::string map(const RunOptions& options, Input& input, pipeline::Pipeline& pipeline, ResultFolder& folder) {
+std::string map(const RunOptions& options, Input& input, pipeline::Pipeline& pipeline, ResultFolder& folder,
+                Growth& growth) {
     std::string error;
     Progress progress(options.quiet);
     InterimResults interim(folder);
     try {
         while (!messages::stop_requested() && input.feed()) {
             pipeline.settle();
+            growth.watch(pipeline);
             progress.show(input, pipeline);
             interim.write_if_due(pipeline);
         }
@@ -85,6 +88,7 @@ std::string map(const RunOptions& options, Input& input, pipeline::Pipeline& pip
     spdlog::debug("kept what was mapped so far {} times: {:.1f} ms of CPU, {:.1f} ms by the clock",
                   interim.times(), interim.cpu_ms(), interim.wall_ms());
     pipeline.finish();
+    growth.finish(pipeline);
     return error;
 }
 
@@ -164,7 +168,8 @@ int run(RunOptions options, const nlohmann::ordered_json& about) {
     warn(folder.take_notes());
 
     RunClock clock;
-    const std::string error = map(options, *input, pipeline, folder);
+    Growth growth;
+    const std::string error = map(options, *input, pipeline, folder, growth);
     clock.stop();
     if (const pipeline::GivenPoses* given = pipeline.given_poses();
         given != nullptr && given->missing() > 0 && !given->fit_nothing()) {
@@ -174,7 +179,8 @@ int run(RunOptions options, const nlohmann::ordered_json& about) {
     for (const std::string& line : input->complaints()) spdlog::warn("{}", line);
     bus.complaints().log_totals();
 
-    const Outputs outputs = write_outputs(folder, options.input, *input, pipeline, depth, clock, about);
+    const Outputs outputs =
+        write_outputs(folder, options.input, *input, pipeline, {depth, clock, growth}, about);
     warn(folder.take_notes());
     if (!outputs.report.is_null()) warn(outputs.report.at("warnings").get<std::vector<std::string>>());
     std::vector<std::string> problems = problems_of(options, *input, pipeline, folder, outputs);

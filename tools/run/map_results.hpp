@@ -33,7 +33,10 @@ std::vector<Result> drawn_results(const MapSource& source);
 /// report.json and report.md; nothing if the report is null.
 std::vector<Result> report_results(const nlohmann::ordered_json& report);
 
-/// The names of all of them, of as many components as can be.
+/// What else stands beside a map that a run made: of its depth.
+inline constexpr char kOctomapFile[] = "octomap.bt", kPointsFile[] = "points.ply";
+
+/// The names of what follows from a map, of as many components as can be.
 std::vector<std::string> map_result_names();
 
 }  // namespace planemap

@@ -11,13 +11,16 @@
 
 #include "core/components.hpp"
 #include "core/files.hpp"
+#include "evaluate/point_sample.hpp"
 #include "evaluate/soundness_report.hpp"
 #include "map/map_file.hpp"
 #include "messages/convert.hpp"
 #include "pipeline/pipeline.hpp"
 #include "run/accuracy.hpp"
 #include "run/depth_watch.hpp"
+#include "run/growth.hpp"
 #include "run/input.hpp"
+#include "run/leaf_accuracy.hpp"
 #include "run/losses.hpp"
 #include "run/map_results.hpp"
 #include "run/report.hpp"
@@ -30,6 +33,9 @@ namespace planemap {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr char kPointsComment[] =
+    "planemap: depth readings of a run and the planes that explain them, world frame";
 
 double cpu_seconds() {
     rusage usage = {};
@@ -85,12 +91,14 @@ Trajectory trajectory_of(const pipeline::Pipeline& pipeline, int component) {
     return {};
 }
 
+/// The map as the stored one says it: what is exported from that later is the same to the last digit.
+PlaneMap stored(const map::PlaneMapper& mapper) {
+    return messages::from_message(messages::to_message(mapper.map(), 0));
+}
+
 /// Of a component.
 MapSource map_source(pipeline::Pipeline& pipeline, const map::PlaneMapper& mapper) {
-    // As the stored map says it: what is exported from that later is the same to the last digit.
-    auto stored =
-        std::make_shared<const PlaneMap>(messages::from_message(messages::to_message(mapper.map(), 0)));
-    return {std::move(stored),
+    return {std::make_shared<const PlaneMap>(stored(mapper)),
             [&pipeline, component = mapper.map().component] { return trajectory_of(pipeline, component); },
             [&mapper] { return mapper.sightings(); }};
 }
@@ -165,8 +173,30 @@ Json components_of(pipeline::Pipeline& pipeline) {
     return components;
 }
 
-Json report_of(const std::string& input_name, const Input& input, pipeline::Pipeline& pipeline,
-               const DepthWatch& depth, const RunClock& clock, const Json& about) {
+/// Holds the map against the depth of the run: figures into the report; the readings' sample.
+std::vector<CloudPoint> judge(pipeline::Pipeline& pipeline, const DepthWatch& depth, Json& report) {
+    const std::vector<evaluation::PosedView> views = depth.posed(pipeline.trajectory());
+    evaluation::PointSample sample(views);
+    LeafAccuracy accuracy(pipeline.octomap() != nullptr ? &pipeline.octomap()->builder().tree() : nullptr);
+    const evaluation::Soundness soundness =
+        evaluation::soundness(stored(pipeline.map().mapper()), views, {}, [&](const auto& reading) {
+            sample.add(reading);
+            accuracy.add(reading);
+        });
+    report.update(evaluation::soundness_figures(soundness));
+    report["coverage"].update(evaluation::coverage_figures(soundness));
+    report["accuracy_beside_size"] = accuracy.figures();
+    return sample.points();
+}
+
+/// What a report is of, and what came to light with it.
+struct Reported {
+    Json report;
+    std::vector<CloudPoint> points;
+};
+
+Reported report_of(const std::string& input_name, const Input& input, pipeline::Pipeline& pipeline,
+                   const RunWatch& watch, const Json& about) {
     const PlaneMap& map = pipeline.map().mapper().map();
     const auto& estimates = pipeline.estimates();
     const std::int64_t tracked = tracked_frames(pipeline);
@@ -191,37 +221,43 @@ Json report_of(const std::string& input_name, const Input& input, pipeline::Pipe
     report["up"] = {{"direction", up_of(map)}, {"why", pipeline.map().mapper().why_up()}};
     report["depth_off"] = depth_off(pipeline);
     report["losses"] = losses_of(pipeline);
-    report["wall_s"] = clock.wall_s();
-    report["cpu_s"] = clock.cpu_s();
+    report["wall_s"] = watch.clock.wall_s();
+    report["cpu_s"] = watch.clock.cpu_s();
     report["peak_rss_mb"] = peak_rss_mb();
     report["stages_ms"] = stages(input, pipeline);
     const double octomap_s = report["stages_ms"]["octomap"]["total_s"].get<double>();
     report["frames_per_s_without_octomap"] =
-        static_cast<double>(input.frames()) / std::max(clock.wall_s() - octomap_s, 1e-9);
+        static_cast<double>(input.frames()) / std::max(watch.clock.wall_s() - octomap_s, 1e-9);
     std::vector<std::string> complaints = input.complaints();
     if (!input.failure().empty()) complaints.push_back(input.failure());
     for (const std::string& line : pipeline.complaints().totals()) complaints.push_back(line);
     report["complaints"] = complaints;
     add_sizes(pipeline, input.frames(), report);
     add_accuracy(input, pipeline, report);
-    report.update(
-        evaluation::soundness_figures(evaluation::soundness(map, depth.posed(pipeline.trajectory()))));
+    std::vector<CloudPoint> points = judge(pipeline, watch.depth, report);
+    report["growth"] = growth_figures(watch.growth.moments());
     std::vector<std::string> warnings =
         warnings_of(estimates, pipeline.given_poses() != nullptr, pipeline.reason_lost(), report);
     for (const std::string& remark : remarks_of(pipeline)) warnings.push_back(remark);
     report["warnings"] = warnings;
     report.update(about);
-    return report;
+    return {std::move(report), std::move(points)};
 }
 
 /// What can be had from the essential results, or is less than them: the small first, the largest last.
-std::vector<Result> further_results(const Input& input, pipeline::Pipeline& pipeline, const Json& report) {
-    std::vector<Result> results = report_results(report);
+std::vector<Result> further_results(const Input& input, pipeline::Pipeline& pipeline,
+                                    const Reported& reported) {
+    std::vector<Result> results = report_results(reported.report);
     for (Result& truth : input.truth_results()) results.push_back(std::move(truth));
     for (Result& drawn : drawn_results(map_source(pipeline, pipeline.map().mapper())))
         results.push_back(std::move(drawn));
+    if (!reported.report.is_null()) {
+        results.push_back({kPointsFile, [&points = reported.points](const auto& file) {
+                               write_file(file, exports::points_ply(points, kPointsComment));
+                           }});
+    }
     if (pipeline.octomap() != nullptr)
-        results.push_back({"octomap.bt", [&pipeline](const auto& file) {
+        results.push_back({kOctomapFile, [&pipeline](const auto& file) {
                                write_file(file, pipeline.octomap()->builder().bt());
                            }});
     return results;
@@ -240,7 +276,7 @@ std::string why_poorer(const std::filesystem::path& folder, const Input& input,
 
 std::vector<std::string> result_names(const std::filesystem::path& folder, const Input& input) {
     std::vector<std::string> names = map_result_names();
-    names.emplace_back("octomap.bt");
+    for (const char* name : {kOctomapFile, kPointsFile}) names.emplace_back(name);
     const std::vector<std::string> truth{"groundtruth.txt", "planes_truth.json"};
     std::error_code ignored;
     bool simulated_before = false;
@@ -266,8 +302,7 @@ std::vector<std::string> result_names(const std::filesystem::path& folder, const
 }
 
 Outputs write_outputs(ResultFolder& folder, const std::string& input_name, const Input& input,
-                      pipeline::Pipeline& pipeline, const DepthWatch& depth, const RunClock& clock,
-                      const Json& about) {
+                      pipeline::Pipeline& pipeline, const RunWatch& watch, const Json& about) {
     Outputs outputs;
     const auto attempt = [&](const std::function<void()>& action) {
         try {
@@ -283,8 +318,10 @@ Outputs write_outputs(ResultFolder& folder, const std::string& input_name, const
             if (attempt([&] { folder.make(result); })) outputs.files.push_back(result.name);
     };
     make(essential_results(pipeline));  // before the report, which takes a while
-    attempt([&] { outputs.report = report_of(input_name, input, pipeline, depth, clock, about); });
-    make(further_results(input, pipeline, outputs.report));
+    Reported reported;
+    attempt([&] { reported = report_of(input_name, input, pipeline, watch, about); });
+    make(further_results(input, pipeline, reported));
+    outputs.report = std::move(reported.report);
 
     const bool whole = outputs.failures.empty(), holds_earlier = folder.holds_earlier();
     if (holds_earlier) outputs.why_aside = why_poorer(folder.path(), input, pipeline);

@@ -12,6 +12,7 @@
 namespace planemap {
 
 class DepthWatch;
+class Growth;
 class Input;
 namespace pipeline {
 class Pipeline;
@@ -41,6 +42,13 @@ std::vector<Result> essential_results(pipeline::Pipeline& pipeline);
 /// std::runtime_error naming the file if this run would write over one that is not.
 std::vector<std::string> result_names(const std::filesystem::path& folder, const Input& input);
 
+/// What watched a run while it went.
+struct RunWatch {
+    const DepthWatch& depth;
+    const RunClock& clock;
+    const Growth& growth;
+};
+
 /// What became of a run's results.
 struct Outputs {
     nlohmann::ordered_json report;      ///< null if it could not be made
@@ -57,7 +65,7 @@ struct Outputs {
 /// better one (why_not_replace()). Else they are set aside in a folder of their own, or, if
 /// no frame was tracked, dropped. Without an earlier run they are put in place, whole or not.
 Outputs write_outputs(ResultFolder& folder, const std::string& input_name, const Input& input,
-                      pipeline::Pipeline& pipeline, const DepthWatch& depth, const RunClock& clock,
+                      pipeline::Pipeline& pipeline, const RunWatch& watch,
                       const nlohmann::ordered_json& about);
 
 }  // namespace planemap

@@ -7,6 +7,8 @@
 #include "core/files.hpp"
 #include "core/json_file.hpp"
 #include "evaluate/soundness_report.hpp"
+#include "run/growth.hpp"
+#include "run/leaf_accuracy.hpp"
 #include "run/losses.hpp"
 #include "run/report_text.hpp"
 #include "run/size_report.hpp"
@@ -192,7 +194,10 @@ std::string report_markdown(const Json& report) {
         add_remarks(report, out);
         out += losses_markdown(report);
         out += sizes_markdown(report);
+        out += evaluation::coverage_markdown(report.at("coverage"));
+        out += leaf_accuracy_markdown(report);
         if (report.contains("soundness")) out += evaluation::soundness_markdown(report);
+        out += growth_markdown(report);
         if (!is_exported(report)) add_times(report, out);
         return out;
     } catch (const Json::exception& error) {

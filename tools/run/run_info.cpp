@@ -7,6 +7,7 @@
 
 #include "core/version.hpp"
 #include "messages/flags.hpp"
+#include "results/host.hpp"
 
 namespace planemap {
 
@@ -38,8 +39,13 @@ Json run_info(const messages::Flags& flags) {
             },
             flag.value);
     }
+    const auto known = [](const std::optional<std::string>& text) {
+        return text ? Json(*text) : Json(nullptr);
+    };
     return {{"version", version()},
             {"date", utc_now()},
+            {"host", known(host_name())},
+            {"cpu", known(cpu_model())},
             {"seed", options.value("seed", Json())},
             {"options", options}};
 }

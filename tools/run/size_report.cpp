@@ -47,7 +47,9 @@ void add_tree(const ::octomap::OcTree& tree, const octomap::OctomapSizes& s, con
                          {"leaves", s.leaves},
                          {"occupied_leaves", s.occupied_leaves}};
     const Coverage c = coverage_of(map, octomap::occupied_voxels_of(tree), resolution);
-    report["coverage"] = {{"leaves_explained", c.leaves_explained}, {"area_supported", c.area_supported}};
+    report["coverage"]["leaves_explained"] = c.leaves_explained;
+    report["coverage"]["area_supported"] = c.area_supported;
+    report["coverage"]["leaves_explained_half"] = c.leaves_explained_half;
 }
 
 void add_octomap(const octomap::OctomapBuilder& builder, const PlaneMap& map, Json& sizes, Json& report) {
@@ -178,7 +180,9 @@ void add_map_sizes(const PlaneMap& map, Json& report) {
                             "octomap_bt_zstd", "octomap_bt_occupied_zstd", "octomap_working"})
         sizes[key] = nullptr;
     report["octomap"] = {{"resolution_m", nullptr}, {"nodes", nullptr}};
-    report["coverage"] = {{"leaves_explained", nullptr}, {"area_supported", nullptr}};
+    for (const char* key : {"leaves_explained", "area_supported", "leaves_explained_half", "within_2cm",
+                            "within_band", "within_5cm", "by_range", "outline_seen_within_band"})
+        report["coverage"][key] = nullptr;
     report["sizes_bytes"] = sizes;
 }
 
