@@ -10,7 +10,6 @@
 #include "messages/bus.hpp"
 #include "messages/channels.hpp"
 #include "messages/convert.hpp"
-#include "messages/decode.hpp"
 
 namespace {
 
@@ -29,8 +28,7 @@ void listen(const char* url, long wanted) {
     long heard = 0;
     // What cannot be decoded throws; the bus counts it, says so once, and goes on.
     bus.subscribe(planemap::messages::channels::kMap, [&](const planemap::messages::RawMessage& message) {
-        print(planemap::messages::from_message(
-            planemap::messages::decode<planemap::plane_map_t>(message.bytes)));
+        print(planemap::messages::plane_map_from(message.bytes));
         ++heard;
     });
     while (wanted == 0 || heard < wanted) bus.handle(1000);

@@ -5,13 +5,14 @@
   lcm-gen -p --ppath types /usr/share/planemap/lcmtypes/*.lcm      # or lcmtypes/*.lcm of a checkout
   PYTHONPATH=types examples/04_read_a_log.py out/office/plane_map.lcmlog
 """
+import math
 import struct
 import sys
 
 import planemap
 
-LABELS = {getattr(planemap.map_plane_t, name): name[len("LABEL_"):].lower()
-          for name in dir(planemap.map_plane_t) if name.startswith("LABEL_")}
+LABELS = {getattr(planemap.plane_map_t, name): name[len("LABEL_"):].lower()
+          for name in dir(planemap.plane_map_t) if name.startswith("LABEL_")}
 
 
 def events(path):
@@ -29,6 +30,51 @@ def events(path):
             yield number, utime, channel.decode(), data
 
 
+def numbers(data):
+    """What plane_map_t.packed holds: seven bits a byte, the lowest first, the eighth says that more follow."""
+    value = shift = 0
+    for byte in data:
+        value |= (byte & 127) << shift
+        shift += 7
+        if byte < 128:
+            yield value
+            value = shift = 0
+
+
+def unpacked(message):
+    """The planes of a plane_map_t, as docs/formats.md has them; rings in metres in the plane, from its point nearest to the
+    world's origin. Lines, points and inferred parts follow them."""
+    stream = numbers(message.packed)
+    number = lambda: next(stream)
+    signed = lambda: (lambda n: n >> 1 ^ -(n & 1))(next(stream))
+    planes, last_id = [], -1
+    for _ in range(number()):
+        plane = {"id": last_id + 1 + signed(), "label": number()}
+        last_id = plane["id"]
+        x, y = signed() / 65536, signed() / 65536
+        z = 1 - abs(x) - abs(y)
+        if z < 0:
+            x, y = math.copysign(1 - abs(y), x), math.copysign(1 - abs(x), y)
+        length = math.sqrt(x * x + y * y + z * z)
+        plane["normal"] = (x / length, y / length, z / length)
+        plane["d"], plane["angle"] = signed() * 0.0005, signed() * math.pi / 8192
+        plane["rms"], inliers, plane["keyframes"] = number() * 0.0001, number(), number()
+        plane["inliers"] = (inliers & 511) * 2 ** (inliers >> 9)
+        plane["rings"], u, v = [], 0, 0
+        for _ in range(number()):
+            plane["rings"].append([])
+            for _ in range(number()):
+                u, v = u + signed(), v + signed()
+                plane["rings"][-1].append((u * message.unit, v * message.unit))
+        planes.append(plane)
+    return planes
+
+
+def area(rings):
+    """Holes run the other way round."""
+    return abs(sum(a[0] * b[1] - b[0] * a[1] for ring in rings for a, b in zip(ring, ring[1:] + ring[:1]))) / 2
+
+
 def main():
     if len(sys.argv) != 2:
         sys.exit(f"usage: {sys.argv[0]} LOG")
@@ -41,9 +87,14 @@ def main():
         sys.exit(str(error))
     if newest is None:
         sys.exit(f"{sys.argv[1]}: holds no map")
-    for plane in newest.planes:
-        nx, ny, nz = plane.normal
-        print(f"{plane.id} {LABELS[plane.label]} normal {nx:.4f} {ny:.4f} {nz:.4f} d {plane.d:.4f} area {plane.area:.2f}")
+    try:
+        planes = unpacked(newest)
+    except StopIteration:
+        sys.exit(f"{sys.argv[1]}: its map is cut short")
+    for plane in planes:
+        nx, ny, nz = plane["normal"]
+        print(f"{plane['id']} {LABELS[plane['label']]} normal {nx:.4f} {ny:.4f} {nz:.4f} d {plane['d']:.4f} "
+              f"area {area(plane['rings']):.2f}")
 
 
 if __name__ == "__main__":

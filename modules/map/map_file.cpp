@@ -6,18 +6,15 @@
 #include "core/files.hpp"
 #include "messages/channels.hpp"
 #include "messages/convert.hpp"
-#include "messages/decode.hpp"
 #include "messages/log.hpp"
 
 namespace planemap::map {
 
 std::string plane_map_log(const PlaneMap& map) {
-    const plane_map_t message = messages::to_message(map, 0);
     messages::LogEvent event;
     event.utime = map.utime;
     event.channel = messages::channels::kMap;
-    event.bytes.resize(static_cast<std::size_t>(message.getEncodedSize()));
-    message.encode(event.bytes.data(), 0, message.getEncodedSize());
+    event.bytes = messages::to_bytes(messages::to_message(map, 0));
     return messages::encode_event(event);
 }
 
@@ -42,7 +39,7 @@ PlaneMap read_plane_map(const std::filesystem::path& file) {
         throw std::runtime_error(file.string() + ": holds no map (nothing on " + messages::channels::kMap +
                                  ")");
     try {
-        return messages::from_message(messages::decode<plane_map_t>(newest));
+        return messages::plane_map_from(newest);
     } catch (const messages::OtherTypeError& error) {
         throw std::runtime_error(
             file.string() +

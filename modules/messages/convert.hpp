@@ -8,6 +8,7 @@
 #include <bot_core/rigid_transform_t.hpp>
 #include <planemap/acceleration_t.hpp>
 #include <planemap/camera_info_t.hpp>
+#include <planemap/earlier_plane_map_t.hpp>
 #include <planemap/keyframe_t.hpp>
 #include <planemap/look_t.hpp>
 #include <planemap/odometry_t.hpp>
@@ -75,11 +76,16 @@ KeyframeTrajectory from_message(const trajectory_t& message);
 surfaces_t to_message(const Surfaces& surfaces, std::int32_t seq, std::int64_t session = 0);
 Surfaces from_message(const surfaces_t& message);
 
-/// The map in 69 bytes a plane, 2 an outline ring and 4 an outline vertex: the very values that PlaneMap
-/// holds, so nothing is lost but the ends of lines and points, which are rounded to single precision along
-/// their planes.
+/// The map packed: outlines and lines in steps of 5 mm, so that no vertex is further than 5 mm from where it
+/// was (up to 80 m from the middle of its plane), inliers to 0.2 %, and what follows from these left out; see
+/// packed_map.hpp. Throws std::length_error if the map is too large for a message.
 plane_map_t to_message(const PlaneMap& map, std::int32_t seq, std::int64_t session = 0);
 PlaneMap from_message(const plane_map_t& message);
+/// As it was sent before it was packed, in steps of 1 mm: nothing is lost.
+PlaneMap from_message(const earlier_plane_map_t& message);
+/// The map in the bytes of a message of today's format or an earlier one. Throws MessageError as decode() and
+/// from_message() do.
+PlaneMap plane_map_from(std::span<const std::uint8_t> bytes);
 
 /// How the images of a frame are sent.
 enum class ColorEncoding { kRaw, kJpeg };

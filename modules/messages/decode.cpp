@@ -10,6 +10,7 @@
 #include <limits>
 #include <planemap/acceleration_t.hpp>
 #include <planemap/camera_info_t.hpp>
+#include <planemap/earlier_plane_map_t.hpp>
 #include <planemap/keyframe_t.hpp>
 #include <planemap/look_t.hpp>
 #include <planemap/map_size_t.hpp>
@@ -174,6 +175,10 @@ void walk(Walker& w, const surfaces_t*) {
     w.skip(8, "session");
 }
 void walk(Walker& w, const plane_map_t*) {
+    w.skip(8 + 4 + 4 + 4 * 3 + 8 + 4 + 4, "utime");
+    w.array(w.length("n_bytes"), 1, "packed");
+}
+void walk(Walker& w, const earlier_plane_map_t*) {
     w.skip(8 + 4 + 4 + 4 * 3, "utime");
     const std::int32_t planes = w.length("n_planes");
     w.bound(planes, 64, "planes");
@@ -237,7 +242,7 @@ std::vector<Earlier> earlier(const trajectory_t*) {
 std::vector<Earlier> earlier(const planar_regions_t*) {
     return {{0xaedd3398cc393ca2, zeros(8)}};
 }
-std::vector<Earlier> earlier(const plane_map_t*) {
+std::vector<Earlier> earlier(const earlier_plane_map_t*) {
     return {{0x890cd1fe3f86f0fa, zeros(4 + 4)}, {0xad69623d7bd0a548, zeros(8 + 4 + 4)}};
 }
 std::vector<Earlier> earlier(const map_size_t*) {
@@ -328,6 +333,7 @@ PLANEMAP_DECODES(look_t)
 PLANEMAP_DECODES(trajectory_t)
 PLANEMAP_DECODES(surfaces_t)
 PLANEMAP_DECODES(plane_map_t)
+PLANEMAP_DECODES(earlier_plane_map_t)
 PLANEMAP_DECODES(map_size_t)
 PLANEMAP_DECODES(module_status_t)
 

@@ -27,6 +27,7 @@ class look_t;
 class surfaces_t;
 class trajectory_t;
 class plane_map_t;
+class earlier_plane_map_t;
 class map_size_t;
 class module_status_t;
 }  // namespace planemap

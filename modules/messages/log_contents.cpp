@@ -12,6 +12,7 @@
 #include <kinect/frame_msg_t.hpp>
 #include <planemap/acceleration_t.hpp>
 #include <planemap/camera_info_t.hpp>
+#include <planemap/earlier_plane_map_t.hpp>
 #include <planemap/keyframe_t.hpp>
 #include <planemap/look_t.hpp>
 #include <planemap/map_size_t.hpp>
@@ -59,7 +60,8 @@ std::string type_name(std::uint64_t fingerprint) {
         add_names<kinect::frame_msg_t>("kinect", all);
         add_names<vs::object_collection_t, vs::point3d_list_collection_t>("vs", all);
         add_our_names<acceleration_t, camera_info_t, keyframe_t, look_t, map_size_t, module_status_t,
-                      odometry_t, planar_regions_t, plane_map_t, surfaces_t, trajectory_t>(all);
+                      odometry_t, planar_regions_t, plane_map_t, earlier_plane_map_t, surfaces_t,
+                      trajectory_t>(all);
         return all;
     }();
     const auto known = names.find(fingerprint);

@@ -186,7 +186,7 @@ void OdometryShell::on_trajectory(const messages::RawMessage& message) {
 
 void OdometryShell::on_map(const messages::RawMessage& message) {
     if (body_.is_known() || !frames_.odom_from_world()) return;
-    const Eigen::Vector3f up = messages::from_message(messages::decode<plane_map_t>(message.bytes)).up;
+    const Eigen::Vector3f up = messages::plane_map_from(message.bytes).up;
     if (!up.isZero()) body_.hear_up(frames_.odom_from_world()->linear() * up.cast<double>());
 }
 

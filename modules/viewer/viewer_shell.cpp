@@ -39,8 +39,7 @@ void ViewerShell::subscribe_collections() {
         }),
                        1);
     };
-    take(channels::kMap,
-         [this](const auto& m) { map_ = messages::from_message(messages::decode<plane_map_t>(m.bytes)); });
+    take(channels::kMap, [this](const auto& m) { map_ = messages::plane_map_from(m.bytes); });
     take(channels::kTrajectory, [this](const auto& m) {
         const auto all = messages::from_message(messages::decode<trajectory_t>(m.bytes));
         trajectory_ = of_component(all, largest_component(all));  // as PLANEMAP_MAP

@@ -95,6 +95,7 @@ TEST(Decode, SurvivesHostileBytes) {
     torment(to_message(sample_trajectory(), 6));
     torment(to_message(test::sample_surfaces(), 6));
     torment(to_message(sample_map(), 7));
+    torment(test::sample_earlier_map());
     torment(sample_kinect());
     torment(sample_status());
     torment(map_size_t{});
@@ -109,22 +110,26 @@ TEST(Decode, AnotherTypesFingerprintIsAnError) {
 
 /// A message of a type that grew is bounded like any other.
 TEST(Decode, AnEarlierTypesMessageIsTakenAndADamagedOneIsRefused) {
-    PlaneMap map = sample_map();
+    earlier_plane_map_t map = test::sample_earlier_map();
     map.inferred.clear();
-    const std::vector<std::uint8_t> today = encoded(to_message(map, 7));
-    ASSERT_EQ(fingerprints<plane_map_t>().size(), 3u);
+    map.n_inferred = 0;
+    const std::vector<std::uint8_t> last = encoded(map);
+    ASSERT_EQ(fingerprints<earlier_plane_map_t>().size(), 3u);
     for (const auto& [number, missing] :
          {std::pair(1, 8), std::pair(2, 16)}) {  // n_inferred, component; session, too
-        std::vector<std::uint8_t> earlier = today;
+        std::vector<std::uint8_t> earlier = last;
         earlier.resize(earlier.size() - static_cast<std::size_t>(missing));
-        const std::uint64_t fingerprint = fingerprints<plane_map_t>().at(static_cast<std::size_t>(number));
+        const std::uint64_t fingerprint =
+            fingerprints<earlier_plane_map_t>().at(static_cast<std::size_t>(number));
         for (std::size_t i = 0; i < 8; ++i)
             earlier[i] = static_cast<std::uint8_t>(fingerprint >> (56 - 8 * i));
-        EXPECT_EQ(encoded(decode<plane_map_t>(earlier)), today);
-        EXPECT_TRUE(is_a<plane_map_t>(earlier));
+        EXPECT_EQ(encoded(decode<earlier_plane_map_t>(earlier)), last);
+        EXPECT_TRUE(is_a<earlier_plane_map_t>(earlier));
+        EXPECT_EQ(plane_map_from(earlier).planes.size(), 2u);
         EXPECT_FALSE(is_a<camera_info_t>(earlier));
         for (std::size_t length = 0; length < earlier.size(); ++length)
-            EXPECT_THROW(decode<plane_map_t>(std::span(earlier).first(length)), MessageError) << length;
+            EXPECT_THROW(decode<earlier_plane_map_t>(std::span(earlier).first(length)), MessageError)
+                << length;
     }
 }
 

@@ -9,6 +9,7 @@
 #include <kinect/frame_msg_t.hpp>
 #include <planemap/acceleration_t.hpp>
 #include <planemap/camera_info_t.hpp>
+#include <planemap/earlier_plane_map_t.hpp>
 #include <planemap/keyframe_t.hpp>
 #include <planemap/look_t.hpp>
 #include <planemap/map_size_t.hpp>
@@ -34,7 +35,7 @@ void expect_names(const std::string& package) {
 
 TEST(LogContents, EveryTypeThatAModulePublishesOrReadsHasAName) {
     expect_names<acceleration_t, camera_info_t, keyframe_t, look_t, map_size_t, module_status_t, odometry_t,
-                 planar_regions_t, plane_map_t, surfaces_t, trajectory_t>("planemap");
+                 planar_regions_t, plane_map_t, earlier_plane_map_t, surfaces_t, trajectory_t>("planemap");
     expect_names<bot_core::image_t, bot_core::images_t, bot_core::pose_t, bot_core::rigid_transform_t>(
         "bot_core");
     expect_names<kinect::frame_msg_t>("kinect");

@@ -68,6 +68,51 @@ inline PlaneMap sample_map() {
     return map;
 }
 
+/// A map as it was sent before it was packed: two planes of a square metre that meet, one of them with an
+/// inferred part.
+inline earlier_plane_map_t sample_earlier_map() {
+    earlier_plane_map_t map{};
+    map.utime = 5;
+    map.revision = 6;
+    map.up[2] = 1;
+    for (int i = 0; i < 2; ++i) {
+        earlier_map_plane_t plane{};
+        plane.id = 3 * i + 1;
+        plane.label = plane_map_t::LABEL_WALL;
+        plane.normal[i] = 1;
+        plane.d = -2;
+        plane.center[i] = 2;
+        plane.half_extents[0] = plane.half_extents[1] = 0.5f;
+        plane.rms = 0.01f;
+        plane.inliers = 1000;
+        plane.area = 1;
+        plane.n_keyframes = 3;
+        plane.unit = 0.001f;
+        plane.ring_sizes = {4};
+        plane.n_rings = 1;
+        plane.vertices = {{-500, -500}, {500, -500}, {500, 500}, {-500, 500}};
+        plane.n_vertices = 4;
+        map.planes.push_back(plane);
+    }
+    map.n_planes = 2;
+    earlier_map_line_t line{};
+    line.plane_b = 1;
+    line.start = -0.5f;
+    line.stop = 0.25f;
+    map.lines = {line};
+    map.n_lines = 1;
+    earlier_inferred_rings_t inferred{};
+    inferred.plane = 1;
+    inferred.unit = 0.001f;
+    inferred.ring_sizes = {3};
+    inferred.n_rings = 1;
+    inferred.vertices = {{500, -500}, {700, -500}, {700, 500}};
+    inferred.n_vertices = 3;
+    map.inferred = {inferred};
+    map.n_inferred = 1;
+    return map;
+}
+
 inline KeyframeTrajectory sample_trajectory() {
     KeyframeTrajectory trajectory;
     for (int id = 0; id < 4; ++id) trajectory.keyframes.push_back({id, 100 * id, Pose::Identity()});

@@ -28,6 +28,26 @@ Json without_keyframes(const std::string& text) {
     return json;
 }
 
+/// Numbers that may differ: positions by what a map is rounded to when it is stored, inliers by 0.2 %.
+std::string first_difference(const Json& a, const Json& b, const std::string& at = "") {
+    if (a.is_number() && b.is_number()) {
+        const double x = a.get<double>(), y = b.get<double>();
+        return std::abs(x - y) <= std::max(0.01, 0.01 * std::abs(x))
+                   ? ""
+                   : at + ": " + a.dump() + " and " + b.dump();
+    }
+    if (a.type() != b.type() || a.size() != b.size()) return at + " differs";
+    if (a.is_structured()) {
+        for (const auto& [key, value] : a.items()) {
+            const Json other = a.is_object() ? b.value(key, Json()) : b.at(std::stoul(key));
+            const std::string difference = first_difference(value, other, at + "/" + key);
+            if (!difference.empty()) return difference;
+        }
+        return "";
+    }
+    return a == b ? "" : at + " differs";
+}
+
 TEST_F(ExportTest, GivesWhatTheRunGave) {
     map_the_office();
     const Outcome outcome = run("planemap-export", path("run/plane_map.lcmlog") + " -o " + path("out"));
@@ -35,18 +55,21 @@ TEST_F(ExportTest, GivesWhatTheRunGave) {
     EXPECT_EQ(outcome.err, "");
     for (const char* file : {"trajectory.txt", "planes.mtl"})
         EXPECT_EQ(bytes("run/" + std::string(file)), bytes("out/" + std::string(file))) << file;
-    // trajectory.txt rounds to a tenth of a micrometre: what is drawn of it has the same size and planes.
+    // The stored map is rounded to 5 mm: what is drawn of it has about the same size and planes.
     for (const char* file :
          {"planes.ply", "planes.obj", "planes.glb", "floor_plan.geojson", "overhead.svg", "map.svg"}) {
         EXPECT_NEAR(static_cast<double>(bytes("run/" + std::string(file)).size()),
-                    static_cast<double>(bytes("out/" + std::string(file)).size()), 64)
+                    static_cast<double>(bytes("out/" + std::string(file)).size()),
+                    0.02 * static_cast<double>(bytes("run/" + std::string(file)).size()))
             << file;
     }
-    EXPECT_EQ(without_keyframes(bytes("run/planes.json")), without_keyframes(bytes("out/planes.json")));
+    EXPECT_EQ(first_difference(without_keyframes(bytes("run/planes.json")),
+                               without_keyframes(bytes("out/planes.json"))),
+              "");
     EXPECT_TRUE(Json::parse(bytes("out/planes.json")).at("planes").at(0).at("keyframes").is_null());
     const Json of_run = report("run"), exported = report("out");
-    for (const char* key : {"plane_map_memory", "plane_map_message"})
-        EXPECT_EQ(of_run.at("sizes_bytes").at(key), exported.at("sizes_bytes").at(key)) << key;
+    EXPECT_EQ(of_run.at("sizes_bytes").at("plane_map_message"),
+              exported.at("sizes_bytes").at("plane_map_message"));
     EXPECT_EQ(exported.at("tracked"), of_run.at("tracked"));
     for (const char* key : {"frames", "accuracy_beside_size", "growth"})
         EXPECT_TRUE(exported.at(key).is_null()) << key;
@@ -108,7 +131,7 @@ TEST_F(ExportTest, ComparesWithTheOctomapBesideTheMap) {
     EXPECT_EQ(of_run.at("octomap").at("resolution_m"), exported.at("octomap").at("resolution_m"));
     for (const char* key : {"leaves_explained", "area_supported"}) {
         EXPECT_NEAR(of_run.at("coverage").at(key).get<double>(),
-                    exported.at("coverage").at(key).get<double>(), 1e-6)
+                    exported.at("coverage").at(key).get<double>(), 0.01)
             << key;
     }
     EXPECT_THAT(bytes("out/report.md"), HasSubstr("Every ratio below is at that coverage"));

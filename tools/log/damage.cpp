@@ -5,6 +5,7 @@
 #include <bot_core/pose_t.hpp>
 #include <kinect/frame_msg_t.hpp>
 #include <planemap/camera_info_t.hpp>
+#include <planemap/earlier_plane_map_t.hpp>
 #include <planemap/keyframe_t.hpp>
 #include <planemap/map_size_t.hpp>
 #include <planemap/module_status_t.hpp>
@@ -39,8 +40,8 @@ std::string fault_of(const messages::LogEvent& event) {
     if (event.bytes.size() < 8) return std::to_string(event.bytes.size()) + " bytes, not even a fingerprint";
     try {
         decode_any<bot_core::images_t, bot_core::pose_t, kinect::frame_msg_t, camera_info_t, keyframe_t,
-                   map_size_t, module_status_t, odometry_t, planar_regions_t, plane_map_t, trajectory_t>(
-            event);
+                   map_size_t, module_status_t, odometry_t, planar_regions_t, plane_map_t,
+                   earlier_plane_map_t, trajectory_t>(event);
         return {};
     } catch (const messages::MessageError& error) {
         return error.what();

@@ -14,7 +14,6 @@
 #include "evaluate/point_sample.hpp"
 #include "evaluate/soundness_report.hpp"
 #include "map/map_file.hpp"
-#include "messages/convert.hpp"
 #include "pipeline/pipeline.hpp"
 #include "run/accuracy.hpp"
 #include "run/depth_watch.hpp"
@@ -91,14 +90,10 @@ Trajectory trajectory_of(const pipeline::Pipeline& pipeline, int component) {
     return {};
 }
 
-/// The map as the stored one says it: what is exported from that later is the same to the last digit.
-PlaneMap stored(const map::PlaneMapper& mapper) {
-    return messages::from_message(messages::to_message(mapper.map(), 0));
-}
-
 /// Of a component.
 MapSource map_source(pipeline::Pipeline& pipeline, const map::PlaneMapper& mapper) {
-    return {std::make_shared<const PlaneMap>(stored(mapper)),
+    // The map in memory: what is exported from the stored one later is the same to 5 mm.
+    return {std::make_shared<const PlaneMap>(mapper.map()),
             [&pipeline, component = mapper.map().component] { return trajectory_of(pipeline, component); },
             [&mapper] { return mapper.sightings(); }};
 }
@@ -179,7 +174,7 @@ std::vector<CloudPoint> judge(pipeline::Pipeline& pipeline, const DepthWatch& de
     evaluation::PointSample sample(views);
     LeafAccuracy accuracy(pipeline.octomap() != nullptr ? &pipeline.octomap()->builder().tree() : nullptr);
     const evaluation::Soundness soundness =
-        evaluation::soundness(stored(pipeline.map().mapper()), views, {}, [&](const auto& reading) {
+        evaluation::soundness(pipeline.map().mapper().map(), views, {}, [&](const auto& reading) {
             sample.add(reading);
             accuracy.add(reading);
         });

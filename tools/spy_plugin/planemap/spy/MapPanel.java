@@ -15,7 +15,6 @@ import java.awt.geom.Rectangle2D;
 import java.util.ArrayList;
 import java.util.List;
 import javax.swing.JPanel;
-import planemap.map_plane_t;
 import planemap.plane_map_t;
 import planemap.trajectory_t;
 
@@ -27,6 +26,8 @@ final class MapPanel extends JPanel {
     private static final Color TRAJECTORY = new Color(179, 20, 42);
 
     private plane_map_t map;
+    private List<MapPlane> planes = new ArrayList<>();
+    private String problem = "no map yet";
     private trajectory_t trajectory;
 
     MapPanel() {
@@ -37,9 +38,22 @@ final class MapPanel extends JPanel {
     /** Either may be null: not known yet. Called on Swing's thread. */
     void show(plane_map_t newMap, trajectory_t newTrajectory) {
         if (newMap == map && newTrajectory == trajectory) return;
-        map = newMap;
+        if (newMap != map) unpack(newMap);
         trajectory = newTrajectory;
         repaint();
+    }
+
+    private void unpack(plane_map_t newMap) {
+        map = newMap;
+        problem = "no map yet";
+        planes = new ArrayList<>();
+        if (map == null) return;
+        try {
+            planes = MapPlane.of(map);
+            problem = "";
+        } catch (IllegalArgumentException error) {
+            problem = error.getMessage();
+        }
     }
 
     @Override
@@ -47,8 +61,8 @@ final class MapPanel extends JPanel {
         super.paintComponent(graphics);
         Graphics2D g = (Graphics2D) graphics.create();
         g.setRenderingHint(RenderingHints.KEY_ANTIALIASING, RenderingHints.VALUE_ANTIALIAS_ON);
-        if (map == null) {
-            g.drawString("no map yet", MARGIN_PX, MARGIN_PX);
+        if (!problem.isEmpty()) {
+            g.drawString(problem, MARGIN_PX, MARGIN_PX);
         } else {
             drawMap(g, new MapGeometry(map));
         }
@@ -56,14 +70,14 @@ final class MapPanel extends JPanel {
     }
 
     private void drawMap(Graphics2D g, MapGeometry geometry) {
-        List<Drawn> planes = new ArrayList<>();
+        List<Drawn> all = new ArrayList<>();
         Rectangle2D bounds = null;
         Path2D path = trajectoryPath(geometry);
         if (path != null) bounds = path.getBounds2D();
-        for (map_plane_t plane : map.planes) {
+        for (MapPlane plane : planes) {
             Drawn drawn = new Drawn(plane, geometry);
             if (drawn.shape.getCurrentPoint() == null) continue;
-            planes.add(drawn);
+            all.add(drawn);
             Rectangle2D own = drawn.shape.getBounds2D();
             bounds = bounds == null ? own : bounds.createUnion(own);
         }
@@ -71,32 +85,32 @@ final class MapPanel extends JPanel {
         if (bounds == null) return;
         AffineTransform pageFromLevel = fit(bounds);
         // What lies level first, the largest lowest, so that walls stand on it.
-        planes.sort((a, b) -> a.upright != b.upright ? (a.upright ? 1 : -1) : Float.compare(b.plane.area, a.plane.area));
-        for (Drawn drawn : planes) drawn.draw(g, pageFromLevel);
+        all.sort((a, b) -> a.upright != b.upright ? (a.upright ? 1 : -1) : Double.compare(b.plane.area, a.plane.area));
+        for (Drawn drawn : all) drawn.draw(g, pageFromLevel);
         if (path != null) {
             g.setColor(TRAJECTORY);
             g.setStroke(new BasicStroke(2, BasicStroke.CAP_ROUND, BasicStroke.JOIN_ROUND));
             g.draw(pageFromLevel.createTransformedShape(path));
         }
         // Names that do not cover each other, the largest planes' first.
-        planes.sort((a, b) -> Float.compare(b.plane.area, a.plane.area));
+        all.sort((a, b) -> Double.compare(b.plane.area, a.plane.area));
         List<Rectangle2D> taken = new ArrayList<>();
-        for (Drawn drawn : planes) drawn.drawName(g, pageFromLevel, taken);
+        for (Drawn drawn : all) drawn.drawName(g, pageFromLevel, taken);
         drawScale(g, pageFromLevel.getScaleX());
     }
 
     /** A plane's outline from above. */
     private static final class Drawn {
-        final map_plane_t plane;
+        final MapPlane plane;
         final boolean upright;
         final Path2D shape = new Path2D.Double(Path2D.WIND_EVEN_ODD);
         private final double[] middle;
 
-        Drawn(map_plane_t plane, MapGeometry geometry) {
+        Drawn(MapPlane plane, MapGeometry geometry) {
             this.plane = plane;
             upright = geometry.isUpright(plane);
-            middle = geometry.fromAbove(MapGeometry.center(plane));
-            for (double[][] ring : MapGeometry.worldRings(plane)) {
+            middle = geometry.fromAbove(plane.center);
+            for (double[][] ring : plane.rings) {
                 for (int i = 0; i < ring.length; ++i) {
                     double[] p = geometry.fromAbove(ring[i]);
                     if (i == 0) shape.moveTo(p[0], p[1]);
@@ -107,7 +121,7 @@ final class MapPanel extends JPanel {
         }
 
         void draw(Graphics2D g, AffineTransform pageFromLevel) {
-            if (plane.label == map_plane_t.LABEL_CEILING) return;
+            if (plane.label == plane_map_t.LABEL_CEILING) return;
             Shape drawn = pageFromLevel.createTransformedShape(shape);
             Color color = Labels.color(plane.label);
             g.setStroke(new BasicStroke(upright ? 3 : 1));
@@ -120,7 +134,7 @@ final class MapPanel extends JPanel {
         }
 
         void drawName(Graphics2D g, AffineTransform pageFromLevel, List<Rectangle2D> taken) {
-            if (plane.area < LEAST_NAMED_M2 || plane.label == map_plane_t.LABEL_CEILING) return;
+            if (plane.area < LEAST_NAMED_M2 || plane.label == plane_map_t.LABEL_CEILING) return;
             Point2D at = pageFromLevel.transform(new Point2D.Double(middle[0], middle[1]), null);
             String name = plane.id + " " + Labels.name(plane.label);
             int width = g.getFontMetrics().stringWidth(name), height = g.getFontMetrics().getAscent();
@@ -162,7 +176,7 @@ final class MapPanel extends JPanel {
         int x = getWidth() - LEGEND_PX, y = MARGIN_PX;
         for (byte label : Labels.ALL) {
             int count = 0;
-            for (map_plane_t plane : map.planes) count += plane.label == label ? 1 : 0;
+            for (MapPlane plane : planes) count += plane.label == label ? 1 : 0;
             if (count == 0) continue;
             g.setColor(Labels.color(label));
             g.fillRect(x, y - 10, 14, 12);
@@ -175,7 +189,7 @@ final class MapPanel extends JPanel {
         g.fillRect(x, y - 6, 14, 3);
         g.setColor(Color.BLACK);
         g.drawString(drawn, x + 22, y);
-        g.drawString(map.n_planes + " planes" + (geometry.upIsKnown ? "" : "; up is not known"), MARGIN_PX, getHeight() - 12);
+        g.drawString(planes.size() + " planes" + (geometry.upIsKnown ? "" : "; up is not known"), MARGIN_PX, getHeight() - 12);
     }
 
     private void drawScale(Graphics2D g, double pixelsPerMetre) {
