@@ -11,7 +11,7 @@
 #include "map/map_file.hpp"
 #include "run/map_results.hpp"
 #include "run/report.hpp"
-#include "run/size_report.hpp"
+#include "run/stored_map.hpp"
 
 namespace planemap {
 
@@ -87,40 +87,6 @@ void require_ours(const ExportOptions& options, const std::vector<std::string>& 
     }
 }
 
-/// The OctoMap of the same session, where it lies beside the map.
-void add_octomap_beside(const ExportOptions& options, const PlaneMap& map, std::vector<std::string>& warnings,
-                        Json& report) {
-    const fs::path beside = options.map.parent_path() / kOctomapFile;
-    std::error_code ignored;
-    if (!fs::exists(beside, ignored)) return;
-    try {
-        add_stored_octomap(beside, map, report);
-    } catch (const std::runtime_error& error) {
-        warnings.push_back(std::string(error.what()) + ": there is nothing to compare the map's size with");
-    }
-}
-
-Json report_of(const ExportOptions& options, const PlaneMap& map, const Trajectory* trajectory,
-               std::vector<std::string>& warnings, const Json& about) {
-    Json report;
-    report["input"] = options.map.string();
-    report["exported"] = true;
-    report["frames"] = nullptr;
-    report["tracked"] = trajectory == nullptr ? Json() : Json(trajectory->size());
-    for (const char* key : {"lost", "broken", "interrupted", "keyframes", "loop_closures"})
-        report[key] = nullptr;
-    report["planes"] = map.planes.size();
-    for (const char* key : {"wall_s", "cpu_s", "peak_rss_mb", "stages_ms", "frames_per_s_without_octomap"})
-        report[key] = nullptr;
-    report["complaints"] = Json::array();
-    add_map_sizes(map, report);
-    add_octomap_beside(options, map, warnings, report);
-    for (const char* key : {"accuracy_beside_size", "growth"}) report[key] = nullptr;
-    report["warnings"] = warnings;
-    report.update(about);
-    return report;
-}
-
 }  // namespace
 
 Exported export_map(const ExportOptions& options, const Json& about) {
@@ -129,17 +95,18 @@ Exported export_map(const ExportOptions& options, const Json& about) {
     const fs::path file = trajectory_file(options);
     Trajectory trajectory;
     if (!file.empty()) trajectory = read_trajectory(file, &exported.remarks);
-    std::vector<std::string> warnings;
-    if (map.planes.empty()) warnings.push_back(options.map.string() + ": its map has no planes");
     const std::vector<std::string> names = export_names(options, file);
     require_ours(options, names);
     ResultFolder folder(options.output, names);
 
     MapSource source{std::make_shared<const PlaneMap>(map), nullptr, [] { return std::nullopt; }};
     if (!file.empty()) source.trajectory = [&trajectory] { return trajectory; };
-    const Json report = report_of(options, map, file.empty() ? nullptr : &trajectory, warnings, about);
+    Json report = stored_map_report(options.map, map, file.empty() ? nullptr : &trajectory);
+    const auto warnings = report.at("warnings").get<std::vector<std::string>>();
+    report.update(about);
     std::vector<Result> results = essential_results(source);
-    for (const auto& more : {further_components(options), report_results(report), drawn_results(source)})
+    for (const auto& more : {further_components(options), report_results(report), drawn_results(source),
+                             page_results(source, report, options.map.parent_path() / kPointsFile)})
         results.insert(results.end(), more.begin(), more.end());
     try {
         for (const Result& result : results) {

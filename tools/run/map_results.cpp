@@ -6,6 +6,7 @@
 #include "core/components.hpp"
 #include "core/files.hpp"
 #include "map/map_file.hpp"
+#include "report/page.hpp"
 #include "run/report.hpp"
 
 namespace planemap {
@@ -61,10 +62,24 @@ std::vector<Result> report_results(const nlohmann::ordered_json& report) {
             text_result("report.md", [&report] { return report_markdown(report); })};
 }
 
+std::vector<Result> page_results(const MapSource& source, const nlohmann::ordered_json& report,
+                                 const std::filesystem::path& points_file) {
+    const auto page = [map = source.map, trajectory = source.trajectory, &report, points_file] {
+        PageSource shown;
+        shown.report = report;
+        shown.planes = nlohmann::ordered_json::parse(exports::planes_json(*map));
+        if (trajectory) shown.trajectory = trajectory();
+        shown.read_points(points_file);
+        return report_page(shown);
+    };
+    return {text_result("report.html", page)};
+}
+
 std::vector<std::string> map_result_names() {
-    std::vector<std::string> names{"plane_map.lcmlog", "trajectory.txt",     "planes.json",  "report.json",
-                                   "report.md",        "planes.ply",         "planes.obj",   "planes.mtl",
-                                   "planes.glb",       "floor_plan.geojson", "overhead.svg", "map.svg"};
+    std::vector<std::string> names{"plane_map.lcmlog", "trajectory.txt", "planes.json",        "report.json",
+                                   "report.md",        "report.html",    "planes.ply",         "planes.obj",
+                                   "planes.mtl",       "planes.glb",     "floor_plan.geojson", "overhead.svg",
+                                   "map.svg"};
     for (std::size_t number = 2; number <= kMostComponentFiles; ++number)
         for (const char* name : {"plane_map.lcmlog", "trajectory.txt", "planes.json"})
             names.push_back(component_file(name, number));

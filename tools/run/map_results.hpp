@@ -2,6 +2,7 @@
 // The results that follow from a map, whether a run has it in memory or a file holds it.
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
@@ -32,6 +33,11 @@ std::vector<Result> drawn_results(const MapSource& source);
 
 /// report.json and report.md; nothing if the report is null.
 std::vector<Result> report_results(const nlohmann::ordered_json& report);
+
+/// report.html, which shows them all, with the points.ply that is beside them, if it is there; the report may
+/// be null: not known.
+std::vector<Result> page_results(const MapSource& source, const nlohmann::ordered_json& report,
+                                 const std::filesystem::path& points_file);
 
 /// What else stands beside a map that a run made: of its depth.
 inline constexpr char kOctomapFile[] = "octomap.bt", kPointsFile[] = "points.ply";

@@ -241,16 +241,18 @@ Reported report_of(const std::string& input_name, const Input& input, pipeline::
 
 /// What can be had from the essential results, or is less than them: the small first, the largest last.
 std::vector<Result> further_results(const Input& input, pipeline::Pipeline& pipeline,
-                                    const Reported& reported) {
+                                    const Reported& reported, const ResultFolder& folder) {
     std::vector<Result> results = report_results(reported.report);
+    const MapSource source = map_source(pipeline, pipeline.map().mapper());
     for (Result& truth : input.truth_results()) results.push_back(std::move(truth));
-    for (Result& drawn : drawn_results(map_source(pipeline, pipeline.map().mapper())))
-        results.push_back(std::move(drawn));
+    for (Result& drawn : drawn_results(source)) results.push_back(std::move(drawn));
     if (!reported.report.is_null()) {
         results.push_back({kPointsFile, [&points = reported.points](const auto& file) {
                                write_file(file, exports::points_ply(points, kPointsComment));
                            }});
     }
+    for (Result& page : page_results(source, reported.report, folder.made(kPointsFile)))
+        results.push_back(std::move(page));
     if (pipeline.octomap() != nullptr)
         results.push_back({kOctomapFile, [&pipeline](const auto& file) {
                                write_file(file, pipeline.octomap()->builder().bt());
@@ -315,7 +317,7 @@ Outputs write_outputs(ResultFolder& folder, const std::string& input_name, const
     make(essential_results(pipeline));  // before the report, which takes a while
     Reported reported;
     attempt([&] { reported = report_of(input_name, input, pipeline, watch, about); });
-    make(further_results(input, pipeline, reported));
+    make(further_results(input, pipeline, reported, folder));
     outputs.report = std::move(reported.report);
 
     const bool whole = outputs.failures.empty(), holds_earlier = folder.holds_earlier();
