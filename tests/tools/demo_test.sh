@@ -53,13 +53,13 @@ expect "$work/err.txt" 'building: 50 % 100 of 200 steps, [0-9]+ (s|min) left'
 [[ "$(wc -l <"$work/err.txt")" -le 14 ]] || fail "more than 14 lines: $(cat "$work/err.txt")"
 [[ "$(grep -c compiling "$work/out/build.log")" -eq 200 ]] || fail "the log does not hold what the build said"
 expect "$work/out.txt" "mapped sim:office --output $work/out/sim_office"
-expect "$work/out.txt" "$work/out/sim_office/overhead.svg"
+expect "$work/out.txt" "$work/out/sim_office/report.html"
 
 rm "$work/cmake.calls"
 demo sim:office --output "$work/mine" || fail "the second time: $(cat "$work/err.txt")"
 expect_not "$work/cmake.calls" 'PLANEMAP_|CMAKE_BUILD_TYPE'
 expect "$work/out.txt" "mapped sim:office --output $work/mine"
-expect "$work/out.txt" "$work/mine/overhead.svg"
+expect "$work/out.txt" "$work/mine/report.html"
 
 touch "$work/broken"
 if demo; then fail "a broken build is no error"; fi

@@ -73,7 +73,7 @@ std::map<int, std::int16_t> places_of(const Json& planes) {
     return places;
 }
 
-Json shown_points(const std::vector<PlanePoint>& points, const Json& planes) {
+Json shown_points(const std::vector<CloudPoint>& points, const Json& planes) {
     const std::map<int, std::int16_t> places = places_of(planes);
     const std::vector<std::size_t> chosen = spread(points.size(), kMostPoints);
     Eigen::AlignedBox3f box;
@@ -90,7 +90,7 @@ Json shown_points(const std::vector<PlanePoint>& points, const Json& planes) {
     std::vector<std::uint8_t> colors;
     std::vector<std::int16_t> on;
     for (const std::size_t i : chosen) {
-        const PlanePoint& point = points[i];
+        const CloudPoint& point = points[i];
         for (int k = 0; k < 3; ++k)
             positions.push_back(static_cast<std::uint16_t>(
                 std::clamp(std::round((point.position[k] - box.min()[k]) / per_step[k]), 0.0F, 65535.0F)));

@@ -18,7 +18,7 @@ struct PageSource {
     nlohmann::ordered_json report;                  ///< report.json
     nlohmann::ordered_json planes;                  ///< planes.json
     Trajectory trajectory;                          ///< world_from_camera
-    std::optional<std::vector<PlanePoint>> points;  ///< points.ply
+    std::optional<std::vector<CloudPoint>> points;  ///< points.ply
     std::vector<std::string> notes;                 ///< what could not be read, a line each
 
     /// From files; what is not there is not known, what is there and cannot be read becomes a note.

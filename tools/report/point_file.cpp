@@ -116,15 +116,15 @@ T value_at(const char* at) {
     return value;
 }
 
-std::vector<PlanePoint> points_of(const std::string& bytes) {
+std::vector<CloudPoint> points_of(const std::string& bytes) {
     const Layout layout = layout_of(bytes);
     if ((bytes.size() - layout.start) / layout.stride < layout.points) fail("is cut short");
     const auto offset = [&](std::size_t i) { return *layout.wanted[i].offset; };
-    std::vector<PlanePoint> points;
+    std::vector<CloudPoint> points;
     points.reserve(layout.points);
     for (std::size_t i = 0; i < layout.points; ++i) {
         const char* vertex = bytes.data() + layout.start + i * layout.stride;
-        PlanePoint point;
+        CloudPoint point;
         for (std::size_t k = 0; k < 3; ++k)
             point.position[static_cast<Eigen::Index>(k)] = value_at<float>(vertex + offset(k));
         if (!point.position.allFinite()) continue;
@@ -138,7 +138,7 @@ std::vector<PlanePoint> points_of(const std::string& bytes) {
 
 }  // namespace
 
-std::vector<PlanePoint> read_points(const std::filesystem::path& file) {
+std::vector<CloudPoint> read_points(const std::filesystem::path& file) {
     const std::string bytes = read_file(file, kMostBytes);
     try {
         return points_of(bytes);
