@@ -63,22 +63,24 @@ int report(const ReportOptions& options) {
         print(options.json ? text_of(comparison) : comparison_markdown(comparison));
         return 0;
     }
-    std::string text;
-    for (const Subject& subject : subjects) {
-        const std::string markdown = markdown_of(subject);
-        if (subjects.size() == 1) text = markdown;
-        if (subject.is_folder) write_file(subject.path / "report.md", markdown);
-    }
-    if (subjects.size() > 1) text = overview_markdown(subjects);
-    if (options.json) text = text_of(reports_of(subjects));
-    if (options.html && !options.json && !options.markdown) text.clear();
+    std::vector<std::string> markdown;  // also checks that they are reports
+    for (const Subject& subject : subjects) markdown.push_back(markdown_of(subject));
+    std::string pages;
     if (options.html) {
         for (const Subject& subject : subjects) {
             write_file(subject.page_file(), report_page(subject.page_source()));
-            if (!options.json && !options.markdown) text += subject.page_file().string() + "\n";
+            pages += subject.page_file().string() + "\n";
         }
     }
-    print(text);
+    if (options.json) {
+        print(text_of(reports_of(subjects)));
+    } else if (options.html && !options.markdown) {
+        print(pages);
+    } else {
+        for (std::size_t i = 0; i < subjects.size(); ++i)
+            if (subjects[i].is_folder) write_file(subjects[i].path / "report.md", markdown[i]);
+        print(subjects.size() == 1 ? markdown.front() : overview_markdown(subjects));
+    }
     return 0;
 }
 

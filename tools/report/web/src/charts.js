@@ -87,7 +87,7 @@ function key(list) {
 export function barChart({ rows, alt, most }) {
   const highest = most ?? Math.max(...rows.map((row) => row.value), 1e-12)
   return responsive((width) => {
-    const above = width < 460, nameWidth = above ? 0 : Math.min(250, width * 0.36), textWidth = 92, step = above ? 40 : 26
+    const above = width < 460, longest = Math.max(...rows.map((row) => row.name.length)), nameWidth = above ? 0 : Math.min(14 + 7.4 * longest, width * 0.5), textWidth = 92, step = above ? 40 : 26
     const height = step * rows.length + 2, parts = []
     rows.forEach((row, i) => {
       const y = i * step + (above ? 20 : 4), wide = Math.max(row.value > 0 ? 1.5 : 0, (row.value / highest) * (width - nameWidth - textWidth))

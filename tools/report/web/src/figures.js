@@ -11,8 +11,8 @@ export function headlineOf(report) {
   const planes = numberOf(get(given, 'planes_zstd_bytes'), sizes.plane_map_zstd)
   const stated = get(given, 'opponent')
   const opponent = stated
-    ? { name: [MAP_NAMES[stated.map] ?? stated.map, stated.form].filter(Boolean).join(', '), resolution_m: numberOf(stated.resolution_m), bytes: numberOf(stated.zstd_bytes) }
-    : { name: 'OctoMap, occupied space alone', resolution_m: numberOf(get(report, 'octomap', 'resolution_m')), bytes: numberOf(sizes.octomap_bt_occupied_zstd) }
+    ? { name: `${ARTICLES[stated.map] ?? ''}${MAP_NAMES[stated.map] ?? stated.map}${stated.form ? ` (${stated.form})` : ''}`, resolution_m: numberOf(stated.resolution_m), bytes: numberOf(stated.zstd_bytes) }
+    : { name: 'an OctoMap of the occupied space alone', resolution_m: numberOf(get(report, 'octomap', 'resolution_m')), bytes: numberOf(sizes.octomap_bt_occupied_zstd) }
   const ratio = numberOf(get(given, 'ratio'), planes > 0 && isNumber(opponent.bytes) ? opponent.bytes / planes : null)
   const readings = numberOf(get(given, 'explained_points'), get(report, 'explained_points'), get(report, 'coverage', 'within_band'))
   const leaves = numberOf(get(report, 'coverage', 'leaves_explained'))
@@ -22,6 +22,7 @@ export function headlineOf(report) {
   }
 }
 
+const ARTICLES = { octomap: 'an ', openvdb: 'an ', octree: 'a ' }
 export const MAP_NAMES = { planes: 'plane map', octomap: 'OctoMap', openvdb: 'OpenVDB', octree: 'plain octree', cloud: 'point cloud' }
 
 const FORMER = [

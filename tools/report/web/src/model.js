@@ -9,18 +9,21 @@ function decode(text, Type) {
   return new Type(bytes.buffer)  // little-endian, as all that browsers run on
 }
 
+/// Of [angle, weight]: the mean of those that agree with the one that most agree with. Walls at right angles say the same once
+/// their angles are taken four times.
+function mainAngle(angles) {
+  const agreeing = (main) => angles.filter(([angle]) => Math.cos(angle - main) > Math.cos((20 * Math.PI) / 180))
+  const weight = (list) => list.reduce((sum, [, w]) => sum + w, 0)
+  let best = []
+  for (const [angle] of angles) if (weight(agreeing(angle)) > weight(best)) best = agreeing(angle)
+  return Math.atan2(best.reduce((sum, [a, w]) => sum + w * Math.sin(a), 0), best.reduce((sum, [a, w]) => sum + w * Math.cos(a), 0))
+}
+
 /// Rows of the rotation: z is up, x runs along most walls.
 function levelFrom(up, planes) {
   const z = unit(up)
   const x0 = unit(cross(Math.abs(z[0]) < 0.9 ? [1, 0, 0] : [0, 1, 0], z)), y0 = cross(z, x0)
-  let c = 0, s = 0  // four times the angle: walls at right angles say the same
-  for (const plane of planes) {
-    if (plane.label !== 'wall') continue
-    const angle = 4 * Math.atan2(dot(plane.normal, y0), dot(plane.normal, x0))
-    c += plane.area * Math.cos(angle)
-    s += plane.area * Math.sin(angle)
-  }
-  const angle = Math.atan2(s, c) / 4
+  const angle = mainAngle(planes.filter((plane) => plane.label === 'wall').map((plane) => [4 * Math.atan2(dot(plane.normal, y0), dot(plane.normal, x0)), plane.area])) / 4
   const x = plus(x0.map((v) => v * Math.cos(angle)), y0, Math.sin(angle))
   return [x, cross(z, x), z]
 }
@@ -58,13 +61,22 @@ function trajectoryOf(positions, rows) {
   return line
 }
 
-/// Lowest and highest corner of planes and way; null without either.
+/// Where all but the outermost 1 % of the points lie along an axis: a few wild readings must not make the room small.
+function mostOf(points, axis) {
+  const values = Float32Array.from({ length: points.n }, (_, i) => points.positions[3 * i + axis]).sort()
+  return [values[Math.floor(0.005 * values.length)], values[Math.ceil(0.995 * values.length) - 1]]
+}
+
+/// Lowest and highest corner of planes, way and points; null without any.
 function boundsOf(planes, trajectory, points) {
   const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity]
   const add = (p) => p.forEach((value, k) => { low[k] = Math.min(low[k], value); high[k] = Math.max(high[k], value) })
   for (const plane of planes) plane.rings.flat().forEach(add)
   trajectory.forEach(add)
-  if (planes.length === 0 && points) for (let i = 0; i < points.n; ++i) add(points.positions.subarray(3 * i, 3 * i + 3))
+  if (points && points.n > 0) {
+    const most = [0, 1, 2].map((axis) => mostOf(points, axis))
+    for (const end of [0, 1]) add(most.map((range) => range[end]))
+  }
   return low[0] <= high[0] ? { low, high } : null
 }
 

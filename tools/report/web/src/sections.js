@@ -70,7 +70,7 @@ export function paper(model) {
   const text = (kind) => `Overhead view as ${kind}${model.trajectory.length ? ' with the way of the camera' : ''}.`
   return section('paper', 'Points and planes', 'The same scene both ways, as Figures 4 and 5 of the paper show it; Figure 3 is the view in three dimensions with “points by plane”.',
     h('div', { class: 'two' },
-      figure(plan(model, { points: 'photo', way: true, alt: text('points') }), `As points, with the way of the camera (Fig. 4 right): ${count(model.points.n)} of many more.`),
+      figure(plan(model, { points: 'photo', way: true, alt: text('points') }), `As points, with the way of the camera (Fig. 4 right): a sample of ${count(model.points.n)} depth readings.`),
       figure(plan(model, { planes: true, labels: false, way: true, alt: text('planes') }), `As planes (Fig. 4 left): ${plural(model.planes.length, 'plane')}.`)),
     wall(model))
 }

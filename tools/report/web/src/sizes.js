@@ -40,7 +40,7 @@ function overResolutions(report, rows) {
 }
 
 function bars(report, rows) {
-  const files = rows.filter((row) => row.place === 'file' && !row.explained_only && compressed(row) > 0)
+  const files = rows.filter((row) => row.place === 'file' && row.goes_on === 'no' && !row.explained_only && compressed(row) > 0)
   if (files.length < 2) return null
   const few = files.filter((row) => row.map !== 'cloud')
   const list = few.sort((a, b) => compressed(a) - compressed(b)).slice(0, 12).map((row) => ({

@@ -11,7 +11,7 @@ function sentenceOf(head) {
     : head.explainedOf === 'leaves' ? `${percent(head.explained, 0)} of the OctoMap’s occupied leaves lie on its planes` : 'how much of the scene it holds is not known'
   if (!isNumber(head.ratio)) return `A map of ${bytes(head.planes)}, with nothing to compare it with; ${part}.`
   const how = head.ratio >= 1 ? `${round(head.ratio)} times smaller than` : `${round(1 / head.ratio)} times larger than`
-  return `The plane map is ${how} ${head.opponent.name}${isNumber(head.opponent.resolution_m) ? ` of ${edge(head.opponent.resolution_m)}` : ''}, and ${part}.`
+  return `The plane map is ${how} ${head.opponent.name}${isNumber(head.opponent.resolution_m) ? ` at ${edge(head.opponent.resolution_m)}` : ''}, and ${part}.`
 }
 
 function savedCard(head) {
@@ -19,7 +19,7 @@ function savedCard(head) {
   const words = known
     ? [smaller ? 'smaller' : 'larger: nothing is saved', ` than ${head.opponent.name}${isNumber(head.opponent.resolution_m) ? ` at ${edge(head.opponent.resolution_m)}` : ''}`, head.equal ? ', where it is as accurate.' : '.', ' Both compressed (zstd).']
     : ['No map of the same recording to compare with.']
-  const rows = [{ name: 'plane map', value: head.planes, text: bytes(head.planes), kind: 'ours' }]
+  const rows = [{ name: 'the plane map', value: head.planes, text: bytes(head.planes), kind: 'ours' }]
   if (head.opponent) rows.push({ name: head.opponent.name, value: head.opponent.bytes, text: bytes(head.opponent.bytes) })
   return h('div', { class: 'card saved' }, h('p', { class: 'kind' }, 'Saved'),
     h('p', { class: 'figure' }, known ? [round(smaller ? head.ratio : 1 / head.ratio), h('small', {}, ' ×')] : isNumber(head.planes) ? bytes(head.planes) : 'not known'),
