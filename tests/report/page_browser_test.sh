@@ -16,11 +16,11 @@ fail() {
     exit 1
 }
 
-# The page's text as Chromium has it once its script ran; console lines go to the second file.
+# The page before its scripts, as Chromium has it once they ran; console lines go to the second file.
 show() {
     chromium --headless=new --no-sandbox --disable-gpu --disable-3d-apis --user-data-dir="$folder/profile" --window-size=390,900 \
         --host-resolver-rules='MAP * ~NOTFOUND' --virtual-time-budget=5000 --enable-logging=stderr --dump-dom "file://$1" \
-        >"$folder/dom" 2>"$folder/console"
+        2>"$folder/console" | sed '/<noscript>/,$d' >"$folder/dom"
     if grep CONSOLE "$folder/console" >&2; then fail "$1 says something on the console"; fi
 }
 contains() { grep -qF -- "$1" "$folder/dom" || fail "the page lacks: $1"; }
@@ -38,7 +38,7 @@ python3 - "$folder/run/report.json" "$folder/old/report.json" <<'PYTHON'
 import json, sys
 report = json.load(open(sys.argv[1]))
 report['warnings'] = ['</script><script>document.title = "broken out"</script><!--']
-for key in ('sizes', 'headline', 'growth', 'accuracy_beside_size', 'explained_points'):
+for key in ('sizes', 'headline', 'growth', 'accuracy_beside_size', 'host', 'cpu'):
     report.pop(key, None)
 json.dump(report, open(sys.argv[2], 'w'))
 PYTHON
