@@ -137,7 +137,7 @@ function scaleBar({ scale, width, height }) {
 }
 
 /// Which points to see from above: what hangs at the ceiling hides the room.
-const isBelowCeiling = (model, i) => {
+export const isBelowCeiling = (model, i) => {
   const plane = model.points.planes[i] >= 0 ? model.byIndex[model.points.planes[i]] : null
   return plane?.label !== 'ceiling' && model.points.positions[3 * i + 2] < model.ceiling - 0.15
 }

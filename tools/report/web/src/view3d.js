@@ -4,6 +4,7 @@ import { BufferGeometry, Color, Float32BufferAttribute, Group, Line, LineSegment
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js'
 import { color, h } from './dom.js'
 import { inPlane } from './model.js'
+import { isBelowCeiling } from './plan.js'
 import { count } from './text.js'
 import { inside } from './vector.js'
 
@@ -90,8 +91,9 @@ class View {
     if (!model.points) return
     const { colors, planes } = model.points, photo = (c, i) => c.setRGB(colors[3 * i] / 255, colors[3 * i + 1] / 255, colors[3 * i + 2] / 255, 'srgb')
     const ofPlane = (c, i) => c.set(LABEL_COLORS[model.byIndex[planes[i]]?.label] ?? LABEL_COLORS.unknown)
-    this.photo = cloud(model, () => true, photo, 2)
-    this.byPlane = cloud(model, (i) => planes[i] !== -1, ofPlane, 2)
+    const below = (i) => isBelowCeiling(model, i)
+    this.photo = cloud(model, below, photo, 2)
+    this.byPlane = cloud(model, (i) => planes[i] !== -1 && below(i), ofPlane, 2)
     this.missed = cloud(model, (i) => planes[i] === -1, (c) => c.set('#e0452a'), 2.6)
     this.scene.add(this.photo, this.byPlane, this.missed)
   }
@@ -118,7 +120,7 @@ class View {
     const { low, high } = this.model.bounds, size = Math.max(...high.map((v, k) => v - low[k]), 0.5)
     const middle = low.map((v, k) => (v + high[k]) / 2)
     this.controls.target.set(...middle)
-    this.camera.position.set(middle[0] - 0.5 * size, middle[1] - 0.95 * size, middle[2] + 0.85 * size)
+    this.camera.position.set(middle[0] - 0.55 * size, middle[1] - 1.05 * size, middle[2] + 0.95 * size)
     this.camera.near = size / 500
     this.camera.far = size * 20
     this.camera.updateProjectionMatrix()
@@ -208,6 +210,6 @@ export function view3d(model) {
   all.prepend(buttons(view, model))
   all.append(h('ul', { class: 'key' }, used.map((label) => h('li', {}, h('i', { style: `background:${LABEL_COLORS[label] ?? LABEL_COLORS.unknown}` }), label)),
     model.points ? h('li', {}, h('i', { style: 'background:#e0452a' }), 'on no plane') : null),
-    h('figcaption', {}, 'Drag, or focus it and use the arrow keys; + and − zoom, 0 resets; click before you zoom with the wheel. Planes show from the side that was seen, so that walls in front do not hide the room.'))
+    h('figcaption', {}, 'Drag, or focus it and use the arrow keys; + and − zoom, 0 resets; click before you zoom with the wheel. Planes show from the side that was seen, so that walls in front do not hide the room; points at the ceiling are left out.'))
   return all
 }
