@@ -5,7 +5,7 @@ import { isNumber } from './text.js'
 const get = (object, ...keys) => keys.reduce((value, key) => value?.[key], object) ?? null
 const numberOf = (...candidates) => candidates.find(isNumber) ?? null
 
-/// {planes, opponent: {name, resolution_m, bytes}, ratio, explained, explainedOf, sentence}.
+/// {planes, opponent: {name, resolution_m, bytes}, ratio, equal (known to be as accurate), explained, explainedOf}.
 export function headlineOf(report) {
   const sizes = get(report, 'sizes_bytes') ?? {}, given = get(report, 'headline')
   const planes = numberOf(get(given, 'planes_zstd_bytes'), sizes.plane_map_zstd)
@@ -17,7 +17,7 @@ export function headlineOf(report) {
   const readings = numberOf(get(given, 'explained_points'), get(report, 'explained_points'), get(report, 'coverage', 'within_band'))
   const leaves = numberOf(get(report, 'coverage', 'leaves_explained'))
   return {
-    planes, opponent: isNumber(opponent.bytes) ? opponent : null, ratio, sentence: get(given, 'sentence'), equal: isNumber(get(given, 'resolution_m')),
+    planes, opponent: isNumber(opponent.bytes) ? opponent : null, ratio, equal: isNumber(get(given, 'resolution_m')),
     explained: readings ?? leaves, explainedOf: readings !== null ? 'readings' : leaves !== null ? 'leaves' : null,
   }
 }

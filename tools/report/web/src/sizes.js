@@ -13,7 +13,7 @@ const GOES_ON = { no: 'no', 'fixed poses': 'with fixed poses', corrections: 'and
 function seriesOf(rows) {
   const byName = new Map()
   for (const row of rows) {
-    if (row.map === 'planes' || row.place !== 'file' || row.explained_only || !isNumber(row.resolution_m) || !(compressed(row) > 0)) continue
+    if (row.map === 'planes' || row.place !== 'file' || row.goes_on !== 'no' || row.explained_only || !isNumber(row.resolution_m) || !(compressed(row) > 0)) continue
     const name = nameOf(row) + (row.free_space ? ' (with free space)' : '') + (isNumber(row.zstd_bytes) ? ', zstd' : '')
     if (!byName.has(name)) byName.set(name, { name, free: row.free_space, points: [] })
     byName.get(name).points.push([row.resolution_m, compressed(row)])

@@ -6,7 +6,6 @@ import { get, headlineOf, numberOf } from './figures.js'
 import { bytes, centimetres, count, edge, isNumber, percent, plural, round } from './text.js'
 
 function sentenceOf(head) {
-  if (head.sentence) return head.sentence
   const part = head.explainedOf === 'readings' ? `${percent(head.explained, 0)} of what the camera measured lies on its planes`
     : head.explainedOf === 'leaves' ? `${percent(head.explained, 0)} of the OctoMap’s occupied leaves lie on its planes` : 'how much of the scene it holds is not known'
   if (!isNumber(head.ratio)) return `A map of ${bytes(head.planes)}, with nothing to compare it with; ${part}.`
@@ -17,7 +16,7 @@ function sentenceOf(head) {
 function savedCard(head) {
   const known = isNumber(head.ratio), smaller = known && head.ratio >= 1
   const words = known
-    ? [smaller ? 'smaller' : 'larger: nothing is saved', ` than ${head.opponent.name}${isNumber(head.opponent.resolution_m) ? ` at ${edge(head.opponent.resolution_m)}` : ''}`, head.equal ? ', where it is as accurate.' : '.', ' Both compressed (zstd).']
+    ? [smaller ? 'smaller' : 'larger: nothing is saved', ` than ${head.opponent.name}${isNumber(head.opponent.resolution_m) ? ` at ${edge(head.opponent.resolution_m)}` : ''}`, head.equal ? ', about where it is as accurate.' : '.', ' Both compressed (zstd).', head.equal ? '' : ' At which resolution voxels are as accurate is not known.']
     : ['No map of the same recording to compare with.']
   const rows = [{ name: 'the plane map', value: head.planes, text: bytes(head.planes), kind: 'ours' }]
   if (head.opponent) rows.push({ name: head.opponent.name, value: head.opponent.bytes, text: bytes(head.opponent.bytes) })
