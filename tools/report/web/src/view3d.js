@@ -94,7 +94,7 @@ class View {
     const below = (i) => isBelowCeiling(model, i)
     this.photo = cloud(model, below, photo, 2)
     this.byPlane = cloud(model, (i) => planes[i] !== -1 && below(i), ofPlane, 2)
-    this.missed = cloud(model, (i) => planes[i] === -1, (c) => c.set('#e0452a'), 2.6)
+    this.missed = cloud(model, (i) => planes[i] === -1, (c) => c.set('#e0452a'), 2.2)
     this.scene.add(this.photo, this.byPlane, this.missed)
   }
 
