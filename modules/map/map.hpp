@@ -96,6 +96,8 @@ class PlaneMapper {
     std::size_t memory_bytes() const { return planemap::memory_bytes(map()); }
     /// Bytes of what is kept to go on mapping: keyframe regions and rasters, by capacity, roughly.
     std::size_t working_bytes() const;
+    /// Of these what keyframes take, which only corrections of their poses need.
+    std::size_t keyframe_bytes() const { return keyframes_.memory_bytes(); }
 
     /// Exact moments of a plane's points, world frame; zero for an unknown id, and of a plane of start_from()
     /// those of points spread evenly over it.

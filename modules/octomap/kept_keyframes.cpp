@@ -67,7 +67,7 @@ std::size_t KeptKeyframes::bytes() const {
     return bytes;
 }
 
-std::size_t KeptKeyframes::voxel_cloud_size(double voxel_m, int subsample) const {
+VoxelSet KeptKeyframes::voxel_cloud(double voxel_m, int subsample) const {
     VoxelSet voxels;
     for (const auto& [id, keyframe] : keyframes_) {
         for (const ::octomap::point3d& p : keyframe.scan->points(keyframe.world_from_camera, subsample)) {
@@ -77,7 +77,7 @@ std::size_t KeptKeyframes::voxel_cloud_size(double voxel_m, int subsample) const
                 {static_cast<int>(cell.x()), static_cast<int>(cell.y()), static_cast<int>(cell.z())});
         }
     }
-    return voxels.size();
+    return voxels;
 }
 
 const KeptKeyframes::ById::value_type* KeptKeyframes::next_waiting() const {

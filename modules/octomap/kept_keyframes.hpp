@@ -82,7 +82,7 @@ class KeptKeyframes {
     /// Bytes of the depth images and of the lists of blocks.
     std::size_t bytes() const;
     /// Voxels of the given edge that hold a reading of every n-th pixel along u and v.
-    std::size_t voxel_cloud_size(double voxel_m, int subsample) const;
+    VoxelSet voxel_cloud(double voxel_m, int subsample) const;
 
     /// The next to enter the tree, null when none waits. Whoever inserts it says so by enter().
     const ById::value_type* next_waiting() const;

@@ -138,6 +138,18 @@ void OctomapBuilder::mark_dirty(const std::vector<Voxel>& blocks) {
     for (const Voxel& block : blocks) dirty_.insert(block);
 }
 
+std::unique_ptr<::octomap::OcTree> OctomapBuilder::tree_at(double resolution_m) const {
+    if (frozen_ > 0) return nullptr;
+    auto tree = std::make_unique<::octomap::OcTree>(resolution_m);
+    KeyframeTracer tracer(options_);
+    for (const auto& [id, keyframe] : keyframes_.all()) {
+        tracer.trace(*tree, *keyframe.scan, keyframe.world_from_camera);
+        tracer.apply(*tree);
+    }
+    bring_up_to_date(*tree);
+    return tree;
+}
+
 std::size_t OctomapBuilder::working_bytes() const {
     std::size_t bytes = stored_bytes() + tracer_.memory_bytes() + tree_->memoryUsage();
     if (base_) bytes += base_->memoryUsage();

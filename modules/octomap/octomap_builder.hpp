@@ -97,8 +97,15 @@ class OctomapBuilder {
     /// Points of a voxel cloud: number of voxels of the given edge that hold at least one point of the kept
     /// depth images at their newest poses.
     std::size_t voxel_cloud_size(double voxel_m) const {
-        return keyframes_.voxel_cloud_size(voxel_m, options_.subsample);
+        return keyframes_.voxel_cloud(voxel_m, options_.subsample).size();
     }
+
+    /// The voxels of that cloud.
+    VoxelSet voxel_cloud(double voxel_m) const { return keyframes_.voxel_cloud(voxel_m, options_.subsample); }
+    /// The tree that this one would be at another resolution, brought up to date: all kept depth images, each
+    /// where it is in the tree's keyframes now. Null when there are frozen ones, whose depth is no longer
+    /// known. As long as the scans take.
+    std::unique_ptr<::octomap::OcTree> tree_at(double resolution_m) const;
 
     /// Bytes of the depth images kept for rebuilding.
     std::size_t stored_bytes() const { return keyframes_.bytes(); }

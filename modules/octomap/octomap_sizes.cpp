@@ -11,6 +11,8 @@
 #include <string_view>
 #include <vector>
 
+#include "core/heap_bytes.hpp"
+
 namespace planemap::octomap {
 
 namespace {
@@ -33,6 +35,10 @@ struct Nodes {
         using Tree = ::octomap::OcTreeBaseImpl<::octomap::OcTreeNode, ::octomap::AbstractOccupancyOcTree>;
         return sizeof(Tree) + tree.memoryUsageNode() * count() + inner * sizeof(::octomap::OcTreeNode* [8]);
     }
+    std::size_t allocated_bytes() const {
+        return heap_bytes(sizeof(::octomap::OcTree)) + heap_bytes(sizeof(::octomap::OcTreeNode)) * count() +
+               heap_bytes(sizeof(::octomap::OcTreeNode* [8])) * inner;
+    }
     /// A .bt file holds two bytes an inner node, and says nothing more of leaves.
     std::size_t bt_bytes(const ::octomap::OcTree& tree) const {
         return header(kBtKind, tree, count()).size() + 2 * inner;
@@ -49,9 +55,11 @@ class Census {
     OctomapSizes sizes() const {
         OctomapSizes sizes;
         sizes.memory_bytes = whole_.memory_bytes(tree_);
+        sizes.allocated_bytes = whole_.allocated_bytes();
         sizes.bt_bytes = likely_.bt_bytes(tree_);
         sizes.bt_nodes = likely_.count();
         sizes.bt_loaded_memory_bytes = likely_.memory_bytes(tree_);
+        sizes.bt_loaded_allocated_bytes = likely_.allocated_bytes();
         sizes.bt_occupied_bytes = occupied_.bt_bytes(tree_);
         // A float and a byte that says which children there are.
         sizes.ot_bytes = header(kOtKind, tree_, whole_.count()).size() + 5 * whole_.count();

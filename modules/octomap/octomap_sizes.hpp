@@ -15,9 +15,12 @@ namespace planemap::octomap {
 /// How large an OctoMap is: as it is worked on, as a file, and as that file when it is loaded again.
 struct OctomapSizes {
     std::size_t memory_bytes = 0;  ///< OctoMap's own OcTree::memoryUsage() of the tree that is built
-    std::size_t bt_bytes = 0;      ///< of the binary, maximum likelihood file
-    std::size_t bt_nodes = 0;      ///< of the tree in that file, the root too
-    std::size_t bt_loaded_memory_bytes = 0;  ///< OcTree::memoryUsage() of that file when it is read again
+    std::size_t allocated_bytes =
+        0;  ///< what the same tree takes on the heap, but for OctoMap's 600 kB to cast rays
+    std::size_t bt_bytes = 0;                   ///< of the binary, maximum likelihood file
+    std::size_t bt_nodes = 0;                   ///< of the tree in that file, the root too
+    std::size_t bt_loaded_memory_bytes = 0;     ///< OcTree::memoryUsage() of that file when it is read again
+    std::size_t bt_loaded_allocated_bytes = 0;  ///< what that takes on the heap
     std::size_t bt_occupied_bytes = 0;  ///< of a binary file with the occupied space only, free space left
                                         ///< out as if it were not known
     std::size_t ot_bytes = 0;           ///< of the full file

@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <memory>
 
 #include "core/scene.hpp"
+#include "heap.hpp"
 
 namespace planemap::map {
 namespace {
@@ -58,6 +60,16 @@ TEST(KeyframeStore, AKeyframeIsPlacedOnceBothItAndItsPoseAreThere) {
         EXPECT_EQ(store->add(seen_by(3), losses), Arrival::kRefused) << "no map is made anew for it";
     }
     EXPECT_EQ(losses.keyframes_again, 2u);
+}
+
+TEST(KeyframeStore, OnTheHeapItTakesWhatIsSaid) {
+    if (!test::heap_is_told()) GTEST_SKIP() << "this program's malloc does not tell what it gave out";
+    std::vector<int> ids;
+    for (int i = 0; i < 300; ++i) ids.push_back(i);
+    const std::size_t before = test::heap_in_use();
+    const auto store = std::make_unique<KeyframeStore>(placed(ids));
+    const auto taken = static_cast<double>(test::heap_in_use() - before);
+    EXPECT_NEAR(static_cast<double>(store->memory_bytes()), taken, 0.1 * taken);
 }
 
 TEST(KeyframeStore, CountsWhatItRefuses) {

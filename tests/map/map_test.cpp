@@ -12,6 +12,7 @@
 
 #include "core/geometry/crossing.hpp"
 #include "core/scene.hpp"
+#include "heap.hpp"
 #include "messages/sample_messages.hpp"
 
 namespace planemap::map {
@@ -643,6 +644,26 @@ TEST(PlaneMapper, MemoryOfTheMapDoesNotGrowWithRevisits) {
     EXPECT_GT(after_first_lap, 5 * sizeof(MapPlane));
     EXPECT_LT(mapper.memory_bytes(), after_first_lap + 5 * 100 * sizeof(int));
     EXPECT_GT(mapper.working_bytes(), mapper.memory_bytes());
+}
+
+/// "working_bytes" and "keyframe_bytes" are what the allocator says, to a tenth.
+TEST(PlaneMapper, OnTheHeapItTakesWhatIsSaid) {
+    if (!test::heap_is_told()) GTEST_SKIP() << "this program's malloc does not tell what it gave out";
+    std::vector<Keyframe> keyframes;
+    std::vector<Pose> poses;
+    for (int i = 0; i < 60; ++i) {
+        poses.push_back(camera_at({0.1 * (i % 7), 0.05 * (i % 11), 1}, 0.1 * i));
+        keyframes.push_back(keyframe(i, room(), poses.back(), 0.002));
+    }
+    const auto take_in = [&](PlaneMapper& mapper) {
+        for (std::size_t i = 0; i < keyframes.size(); ++i) mapper.add(keyframes[i], poses[i]);
+    };
+    take_in(*std::make_unique<PlaneMapper>());  // what is made once for the program is not the map's
+    const std::size_t before = test::heap_in_use();
+    const auto mapper = std::make_unique<PlaneMapper>();
+    take_in(*mapper);
+    const auto taken = static_cast<double>(test::heap_in_use() - before);
+    EXPECT_NEAR(static_cast<double>(mapper->working_bytes() + mapper->memory_bytes()), taken, 0.1 * taken);
 }
 
 TEST(PlaneMapper, RejectsWhatIsNotARegion) {

@@ -121,8 +121,8 @@ TEST(KeptKeyframes, AnInvalidPoseIsNotTaken) {
 TEST(KeptKeyframes, TakeTheBytesOfTheirScans) {
     EXPECT_GE(row(3).bytes(), 3 * scan()->bytes());
     EXPECT_EQ(row(0).bytes(), 0u);
-    EXPECT_EQ(row(0).voxel_cloud_size(0.01, 1), 0u);
-    EXPECT_LT(row(1).voxel_cloud_size(0.01, 4), row(1).voxel_cloud_size(0.01, 1));
+    EXPECT_EQ(row(0).voxel_cloud(0.01, 1).size(), 0u);
+    EXPECT_LT(row(1).voxel_cloud(0.01, 4).size(), row(1).voxel_cloud(0.01, 1).size());
 }
 
 TEST(KeptKeyframes, LooksComeAfterTheirKeyframeAndMoveWithTheirAnchor) {

@@ -34,6 +34,26 @@ TEST(OctomapBuilder, PutsLeavesWhereTheDepthIs) {
     EXPECT_FALSE(builder.tree().isNodeOccupied(free));
 }
 
+TEST(OctomapBuilder, AtAnotherResolutionItIsTheTreeThatWouldHaveBeenBuilt) {
+    const CameraInfo camera = small_camera();
+    OctomapOptions coarse;
+    coarse.resolution_m = 0.1;
+    OctomapBuilder fine, other(coarse);
+    for (OctomapBuilder* builder : {&fine, &other}) {
+        for (int i = 0; i < 3; ++i)
+            builder->add(i, room(camera), camera, make_pose({0.1 * i, 0, 0}, Eigen::Quaterniond::Identity()));
+        builder->flush();
+    }
+    ASSERT_NE(fine.tree_at(0.1), nullptr);
+    EXPECT_EQ(ot_of(*fine.tree_at(0.1)), other.ot());
+    EXPECT_EQ(ot_of(*fine.tree_at(0.05)), fine.ot());
+    OctomapOptions few;
+    few.max_keyframes = 1;
+    OctomapBuilder frozen(few);
+    for (int i = 0; i < 3; ++i) frozen.add(i, room(camera), camera, Pose::Identity());
+    EXPECT_EQ(frozen.tree_at(0.1), nullptr) << "the depth of some is no longer there";
+}
+
 TEST(OctomapBuilder, UsesTheDepthCamerasOwnPose) {
     CameraInfo camera = small_camera();
     camera.registered = false;

@@ -16,12 +16,13 @@
 #include "run/progress.hpp"
 #include "run/report.hpp"
 #include "run/run_info.hpp"
+#include "run/size_rows.hpp"
 
 namespace planemap {
 namespace {
 
 struct RunOptions {
-    std::string input, frames;
+    std::string input, frames, size_resolutions = "0.1";
     std::filesystem::path output, poses;
     messages::CameraFlag camera;
     sensor::SourceOptions source;
@@ -52,6 +53,11 @@ void add_run_flags(messages::Flags& flags, RunOptions& options) {
               "of this run: with --poses theirs, else the first camera's");
     flags.add("seed", options.seed, "Of everything random; the same seed gives the same bytes out");
     flags.add("no-octomap", options.no_octomap, "Do not build the OctoMap to compare with");
+    flags.add("size-resolutions", options.size_resolutions,
+              "Resolutions, metres with commas between, that the report tells the OctoMap's sizes at besides "
+              "its own; each "
+              "takes a pass over the keyframes' depth: 0.1 is quick, 0.02 and 0.01 take longer than the "
+              "run's OctoMap");
     flags.add("q,quiet", options.quiet, "No progress lines");
     flags.add("v,verbose", options.verbose, "Log more");
     flags.add(camera::options_of(options.source.device.options), "camera-");
@@ -158,6 +164,7 @@ int run(RunOptions options, const nlohmann::ordered_json& about) {
     options.source.camera = options.pipeline.camera;
     options.source.motion_channel = options.pipeline.odometry.motion.channel;
     if (!options.frames.empty()) options.source.frames = parse_frame_range(options.frames);
+    const std::vector<double> size_resolutions_m = size_resolutions(options.size_resolutions);
     messages::catch_stop_signals();
 
     messages::Bus bus("memq://");
@@ -180,7 +187,7 @@ int run(RunOptions options, const nlohmann::ordered_json& about) {
     bus.complaints().log_totals();
 
     const Outputs outputs =
-        write_outputs(folder, options.input, *input, pipeline, {depth, clock, growth}, about);
+        write_outputs(folder, options.input, *input, pipeline, {depth, clock, growth, size_resolutions_m}, about);
     warn(folder.take_notes());
     if (!outputs.report.is_null()) warn(outputs.report.at("warnings").get<std::vector<std::string>>());
     std::vector<std::string> problems = problems_of(options, *input, pipeline, folder, outputs);

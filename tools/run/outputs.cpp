@@ -24,6 +24,7 @@
 #include "run/map_results.hpp"
 #include "run/report.hpp"
 #include "run/size_report.hpp"
+#include "run/size_rows.hpp"
 #include "run/warnings.hpp"
 #include "run/worth.hpp"
 
@@ -227,10 +228,11 @@ Reported report_of(const std::string& input_name, const Input& input, pipeline::
     if (!input.failure().empty()) complaints.push_back(input.failure());
     for (const std::string& line : pipeline.complaints().totals()) complaints.push_back(line);
     report["complaints"] = complaints;
-    add_sizes(pipeline, input.frames(), report);
+    add_sizes(pipeline, input.frames(), watch.size_resolutions_m, report);
     add_accuracy(input, pipeline, report);
     std::vector<CloudPoint> points = judge(pipeline, watch.depth, report);
     report["growth"] = growth_figures(watch.growth.moments());
+    report["headline"] = headline_of(report);
     std::vector<std::string> warnings =
         warnings_of(estimates, pipeline.given_poses() != nullptr, pipeline.reason_lost(), report);
     for (const std::string& remark : remarks_of(pipeline)) warnings.push_back(remark);

@@ -42,11 +42,12 @@ std::vector<Result> essential_results(pipeline::Pipeline& pipeline);
 /// std::runtime_error naming the file if this run would write over one that is not.
 std::vector<std::string> result_names(const std::filesystem::path& folder, const Input& input);
 
-/// What watched a run while it went.
+/// What watched a run while it went, and what to tell of it.
 struct RunWatch {
     const DepthWatch& depth;
     const RunClock& clock;
     const Growth& growth;
+    const std::vector<double>& size_resolutions_m;  ///< of OctoMaps whose sizes are told, too
 };
 
 /// What became of a run's results.

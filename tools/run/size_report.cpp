@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "run/size_report.hpp"
 
-#include <zstd.h>
-
 #include <nlohmann/json.hpp>
-#include <string_view>
+#include <optional>
 #include <vector>
 
-#include "messages/convert.hpp"
 #include "pipeline/pipeline.hpp"
 #include "run/coverage.hpp"
 #include "run/report_text.hpp"
+#include "run/size_rows.hpp"
 
 namespace planemap {
 
@@ -23,13 +21,6 @@ constexpr int kZstdLevel = 3;          // zstd's own default; a higher one takes
 
 std::int64_t points_bytes(double points) {
     return static_cast<std::int64_t>(kBytesPerPoint * points);
-}
-
-std::size_t zstd_bytes(std::string_view bytes) {
-    std::string out(ZSTD_compressBound(bytes.size()), '\0');
-    const std::size_t size = ZSTD_compress(out.data(), out.size(), bytes.data(), bytes.size(), kZstdLevel);
-    if (ZSTD_isError(size) != 0) throw std::runtime_error(std::string("zstd: ") + ZSTD_getErrorName(size));
-    return size;
 }
 
 /// What a tree tells of itself, whether it was built or read from its file.
@@ -52,21 +43,32 @@ void add_tree(const ::octomap::OcTree& tree, const octomap::OctomapSizes& s, con
     report["coverage"]["leaves_explained_half"] = c.leaves_explained_half;
 }
 
-void add_octomap(const octomap::OctomapBuilder& builder, const PlaneMap& map, Json& sizes, Json& report) {
+/// The rows of the OctoMap, and of what it would be at other resolutions.
+void add_octomap_rows(const octomap::OctomapBuilder& builder, const PlaneMap& map,
+                      const std::vector<double>& resolutions_m, const octomap::VoxelSet& cloud_1cm,
+                      Json& rows) {
+    const octomap::OctomapSizes sizes = builder.sizes();
+    add_tree_rows(builder.tree(), TreeOrigin::kBuilt, map,
+                  builder.working_bytes() - sizes.memory_bytes + sizes.allocated_bytes, rows);
+    for (const double resolution_m : resolutions_m) {
+        if (resolution_m == builder.tree().getResolution()) continue;
+        const auto tree = builder.tree_at(resolution_m);
+        if (tree != nullptr) add_tree_rows(*tree, TreeOrigin::kBuilt, map, std::nullopt, rows);
+    }
+    add_cloud_rows(cloud_1cm, rows);
+}
+
+void add_octomap(const octomap::OctomapBuilder& builder, const PlaneMap& map,
+                 const std::vector<double>& resolutions_m, Json& sizes, Json& report) {
     const octomap::OctomapSizes s = builder.sizes();
+    const octomap::VoxelSet cloud_1cm = builder.voxel_cloud(0.01);
     sizes["octomap_memory"] = s.memory_bytes;
     sizes["octomap_ot"] = s.ot_bytes;
-    sizes["voxel_cloud_1cm"] = points_bytes(static_cast<double>(builder.voxel_cloud_size(0.01)));
+    sizes["voxel_cloud_1cm"] = points_bytes(static_cast<double>(cloud_1cm.size()));
     sizes["octomap_working"] = builder.working_bytes();
     add_tree(builder.tree(), s, map, sizes, report);
     report["octomap"]["rebuilds"] = builder.rebuilds();
-}
-
-std::string bytes_text(double bytes) {
-    if (bytes < 1e3) return format("%.0f B", bytes);
-    if (bytes < 1e6) return format("%.1f kB", bytes / 1e3);
-    if (bytes < 1e9) return format("%.1f MB", bytes / 1e6);
-    return format("%.2f GB", bytes / 1e9);
+    add_octomap_rows(builder, map, resolutions_m, cloud_1cm, report["sizes"]);
 }
 
 std::string share_text(const Json& share) {
@@ -158,24 +160,33 @@ std::string notes(const Json& report) {
 
 }  // namespace
 
+std::string bytes_text(double bytes) {
+    if (bytes < 1e3) return format("%.0f B", bytes);
+    if (bytes < 1e6) return format("%.1f kB", bytes / 1e3);
+    if (bytes < 1e9) return format("%.1f MB", bytes / 1e6);
+    return format("%.2f GB", bytes / 1e9);
+}
+
 std::string format(const char* pattern, double value) {
     char text[256];
     std::snprintf(text, sizeof(text), pattern, value);
     return text;
 }
 
-void add_map_sizes(const PlaneMap& map, Json& report) {
-    const plane_map_t message = messages::to_message(map, 0);
-    std::string bytes(static_cast<std::size_t>(message.getEncodedSize()), '\0');
-    message.encode(bytes.data(), 0, message.getEncodedSize());
+namespace {
+
+void add_sizes_of(const PlaneMap& map, const std::optional<WorkingBytes>& working, Json& report) {
+    report["sizes"] = Json::array();
+    add_plane_rows(map, working, report["sizes"]);
+    const Json& message = report["sizes"].front();
 
     Json sizes;
     sizes["plane_map_memory"] = memory_bytes(map);
-    sizes["plane_map_message"] = bytes.size();
+    sizes["plane_map_message"] = message.at("bytes");
     for (const char* key : {"octomap_memory", "octomap_bt", "octomap_ot", "octomap_occupied_leaves",
                             "raw_cloud", "voxel_cloud_1cm"})
         sizes[key] = nullptr;
-    sizes["plane_map_zstd"] = zstd_bytes(bytes);
+    sizes["plane_map_zstd"] = message.at("zstd_bytes");
     for (const char* key : {"plane_map_working", "octomap_bt_memory", "octomap_bt_occupied",
                             "octomap_bt_zstd", "octomap_bt_occupied_zstd", "octomap_working"})
         sizes[key] = nullptr;
@@ -186,21 +197,30 @@ void add_map_sizes(const PlaneMap& map, Json& report) {
     report["sizes_bytes"] = sizes;
 }
 
-void add_sizes(pipeline::Pipeline& pipeline, std::int64_t frames, Json& report) {
+}  // namespace
+
+void add_map_sizes(const PlaneMap& map, Json& report) {
+    add_sizes_of(map, std::nullopt, report);
+}
+
+void add_sizes(pipeline::Pipeline& pipeline, std::int64_t frames, const std::vector<double>& resolutions_m,
+               Json& report) {
     const map::PlaneMapper& mapper = pipeline.map().mapper();
     const CameraInfo* camera = pipeline.decoder().camera();
     const double pixels = camera != nullptr ? double(camera->depth.width) * camera->depth.height : 0;
-    add_map_sizes(mapper.map(), report);
+    const std::size_t corrections = mapper.working_bytes() + mapper.memory_bytes();
+    add_sizes_of(mapper.map(), WorkingBytes{corrections - mapper.keyframe_bytes(), corrections}, report);
     Json& sizes = report["sizes_bytes"];
     sizes["raw_cloud"] = points_bytes(pixels * static_cast<double>(frames));
-    sizes["plane_map_working"] = mapper.working_bytes() + mapper.memory_bytes();
+    sizes["plane_map_working"] = corrections;
     if (pipeline.octomap() != nullptr)
-        add_octomap(pipeline.octomap()->builder(), mapper.map(), sizes, report);
+        add_octomap(pipeline.octomap()->builder(), mapper.map(), resolutions_m, sizes, report);
 }
 
 void add_stored_octomap(const std::filesystem::path& bt_file, const PlaneMap& map, Json& report) {
     const std::unique_ptr<::octomap::OcTree> tree = octomap::read_bt(bt_file);
     add_tree(*tree, octomap::sizes_of(*tree), map, report["sizes_bytes"], report);
+    add_tree_rows(*tree, TreeOrigin::kReadFromBt, map, std::nullopt, report["sizes"]);
 }
 
 std::string sizes_markdown(const Json& report) {
@@ -219,7 +239,7 @@ std::string sizes_markdown(const Json& report) {
         out += "| " + row.name + " | " + bytes_text(value) + " | " +
                (message > 0 ? ratio_text(value / message) : "") + " |\n";
     }
-    return out + notes(report);
+    return out + notes(report) + size_rows_markdown(report);
 }
 
 }  // namespace planemap

@@ -8,6 +8,7 @@
 
 #include "run/map_results.hpp"
 #include "run/size_report.hpp"
+#include "run/size_rows.hpp"
 
 namespace planemap {
 
@@ -48,6 +49,7 @@ Json stored_map_report(const std::filesystem::path& map_file, const PlaneMap& ma
     add_map_sizes(map, report);
     add_octomap_beside(map_file, map, warnings, report);
     for (const char* key : {"accuracy_beside_size", "growth"}) report[key] = nullptr;
+    report["headline"] = headline_of(report);
     report["warnings"] = warnings;
     return report;
 }
