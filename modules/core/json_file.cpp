@@ -78,8 +78,8 @@ json parse(const std::string& text) {
 
 }  // namespace
 
-json read_json_object(const std::filesystem::path& file) {
-    const std::string text = read_text_file(file, std::size_t{1} << 20);
+json read_json_object(const std::filesystem::path& file, std::size_t max_bytes) {
+    const std::string text = read_text_file(file, max_bytes);
     try {
         json document = parse(text);
         if (!document.is_object()) throw std::invalid_argument("not a JSON object");

@@ -51,6 +51,10 @@ std::string planes_mtl(const PlaneMap& map);
 /// extras.
 std::string planes_glb(const PlaneMap& map, const Trajectory& trajectory);
 
+/// Binary PCD 0.7 as the Point Cloud Library has it: x, y, z (metres), rgb, and label (the plane's id,
+/// 4294967295: none), in the points' own frame, which the comment names.
+std::string points_pcd(const std::vector<CloudPoint>& points, const std::string& comment);
+
 /// GeoJSON of the floor plan: what is upright (walls, sides of furniture) as lines, the rest (floors, tables,
 /// slopes) as polygons with holes, each with label, height range and area, and the trajectory as a line;
 /// ceilings and planes without a label are left out. Coordinates are not degrees but metres in a local level

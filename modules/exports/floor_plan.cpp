@@ -3,7 +3,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "core/geometry/outline_index.hpp"
 #include "exports/exports.hpp"
 #include "exports/parts.hpp"
 
@@ -12,7 +11,6 @@ namespace planemap::exports {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using Part = std::vector<Ring>;  ///< a border and its holes
 
 /// GDAL and QGIS take coordinates without a system for degrees; they read this as a plane with metres.
 constexpr const char* kFrame =
@@ -27,34 +25,6 @@ double rounded(double metres) {
 
 Json position(const Eigen::Vector2d& p) {
     return {rounded(p.x()), rounded(p.y())};
-}
-
-/// Borders counter-clockwise, holes clockwise, as RFC 7946 asks; rings are even-odd and do not cross.
-std::vector<Part> parts_of(const std::vector<Ring>& rings) {
-    const OutlineIndex index(Outline{rings});
-    std::vector<std::vector<std::size_t>> around(rings.size());
-    std::vector<std::size_t> part_of(rings.size(), 0);
-    for (std::size_t i = 0; i < rings.size(); ++i) {
-        around[i] = index.rings_around(0.5 * (rings[i][0] + rings[i][1]));
-        std::erase(around[i], i);
-    }
-    const auto depth = [&](std::size_t ring) { return around[ring].size(); };
-    const auto turned = [](Ring ring, bool counter_clockwise) {
-        if ((signed_area(ring) > 0) != counter_clockwise) std::reverse(ring.begin(), ring.end());
-        return ring;
-    };
-    std::vector<Part> parts;
-    for (std::size_t i = 0; i < rings.size(); ++i) {
-        if (depth(i) % 2 != 0) continue;
-        part_of[i] = parts.size();
-        parts.push_back({turned(rings[i], true)});
-    }
-    for (std::size_t i = 0; i < rings.size(); ++i) {
-        if (depth(i) % 2 == 0) continue;
-        for (const std::size_t j : around[i])
-            if (depth(j) + 1 == depth(i)) parts[part_of[j]].push_back(turned(rings[i], false));
-    }
-    return parts;
 }
 
 Json feature(const Json& id, const std::string& type, Json coordinates, Json properties) {
@@ -79,7 +49,6 @@ Json line_pieces(const MapPlane& plane, const Eigen::Matrix3d& level) {
 Json polygon_pieces(const std::vector<std::vector<Eigen::Vector3d>>& rings_level) {
     std::vector<Ring> rings;
     for (const auto& ring : rings_level) {
-        if (ring.size() < 3) continue;
         Ring& flat = rings.emplace_back();
         for (const Eigen::Vector3d& p : ring) flat.push_back(p.head<2>());
     }

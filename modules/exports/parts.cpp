@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/angle.hpp"
+#include "core/geometry/outline_index.hpp"
 #include "exports/triangulation.hpp"
 
 namespace planemap::exports {
@@ -44,6 +45,41 @@ std::vector<MapPlane> inferred_planes(const PlaneMap& map) {
         planes.back().outline = *inferred;
     }
     return planes;
+}
+
+double inferred_area(const PlaneMap& map, int id) {
+    const MapOutline* inferred = map.inferred_of(id);
+    return inferred == nullptr ? 0 : area(inferred->rings());
+}
+
+std::vector<Part> parts_of(const std::vector<Ring>& all_rings) {
+    std::vector<Ring> rings;
+    for (const Ring& ring : all_rings)
+        if (ring.size() >= 3) rings.push_back(ring);
+    const OutlineIndex index(Outline{rings});
+    std::vector<std::vector<std::size_t>> around(rings.size());
+    std::vector<std::size_t> part_of(rings.size(), 0);
+    for (std::size_t i = 0; i < rings.size(); ++i) {
+        around[i] = index.rings_around(0.5 * (rings[i][0] + rings[i][1]));
+        std::erase(around[i], i);
+    }
+    const auto depth = [&](std::size_t ring) { return around[ring].size(); };
+    const auto turned = [](Ring ring, bool counter_clockwise) {
+        if ((signed_area(ring) > 0) != counter_clockwise) std::reverse(ring.begin(), ring.end());
+        return ring;
+    };
+    std::vector<Part> parts;
+    for (std::size_t i = 0; i < rings.size(); ++i) {
+        if (depth(i) % 2 != 0) continue;
+        part_of[i] = parts.size();
+        parts.push_back({turned(rings[i], true)});
+    }
+    for (std::size_t i = 0; i < rings.size(); ++i) {
+        if (depth(i) % 2 == 0) continue;
+        for (const std::size_t j : around[i])
+            if (depth(j) + 1 == depth(i)) parts[part_of[j]].push_back(turned(rings[i], false));
+    }
+    return parts;
 }
 
 std::vector<std::vector<Eigen::Vector3d>> world_rings(const MapPlane& plane) {

@@ -26,6 +26,16 @@ std::vector<const MapPlane*> drawable_planes(const PlaneMap& map);
 /// The planes of which parts are inferred, with these as their outlines.
 std::vector<MapPlane> inferred_planes(const PlaneMap& map);
 
+/// Area of what is inferred of the plane with the id, square metres; 0 where nothing is.
+double inferred_area(const PlaneMap& map, int id);
+
+/// A border, counter-clockwise, and its holes, clockwise, as RFC 7946 and OGC's simple features have it.
+using Part = std::vector<Ring>;
+
+/// The separate parts of an outline, whose rings are even-odd and do not cross; rings of fewer than three
+/// vertices are left out.
+std::vector<Part> parts_of(const std::vector<Ring>& rings);
+
 /// The outline's rings in the world frame.
 std::vector<std::vector<Eigen::Vector3d>> world_rings(const MapPlane& plane);
 

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "exports/exports.hpp"
+#include "exports/parts.hpp"
 
 namespace planemap::exports {
 
@@ -50,6 +51,7 @@ Json plane_json(const PlaneMap& map, const MapPlane& plane, const std::optional<
     json["inliers"] = number(plane.inliers, 1);
     json["rms"] = number(region.rms);
     json["area"] = number(plane.area);
+    json["inferred_area"] = number(inferred_area(map, plane.id));
     json["center"] = vector(region.box.frame_from_box.translation());
     json["box_corners"] = std::move(corners);
     json["outline"] = rings_json(region.box.frame_from_box, region.outline);

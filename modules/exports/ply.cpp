@@ -1,22 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cstring>
-
 #include "exports/exports.hpp"
+#include "exports/little_endian.hpp"
 #include "exports/parts.hpp"
 
 namespace planemap::exports {
 
 namespace {
-
-void put(std::string& bytes, const auto& value) {
-    std::array<char, sizeof value> raw;
-    std::memcpy(raw.data(), &value, sizeof value);
-    if constexpr (std::endian::native == std::endian::big) std::reverse(raw.begin(), raw.end());
-    bytes.append(raw.data(), raw.size());
-}
 
 /// The parts of a PLY file, in the order of its elements.
 class Ply {

@@ -3,9 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
-#include "core/geometry/plane_intersection.hpp"
 #include "core/geometry/segment.hpp"
 
 namespace planemap::map {
@@ -84,19 +82,6 @@ double distance_inside(const Eigen::Vector3d& a0, const Eigen::Vector3d& a1, con
 }
 
 }  // namespace
-
-PlaneRelation relation(const MapPlane& a, const MapPlane& b) {
-    const Plane plane_a = a.plane(), plane_b = b.plane();
-    PlaneRelation relation;
-    relation.angle = angle_between(plane_a.normal, plane_b.normal);
-    if (std::min(relation.angle, std::numbers::pi - relation.angle) > kParallel_rad) return relation;
-    const double side = plane_a.normal.dot(plane_b.normal) > 0 ? 1 : -1;
-    const Eigen::Vector3d along = (plane_a.normal + side * plane_b.normal).normalized();
-    const Eigen::Vector3d middle = 0.5 * (a.center + b.center).cast<double>();
-    relation.distance = std::abs(plane_a.signed_distance(middle) / plane_a.normal.dot(along) -
-                                 plane_b.signed_distance(middle) / plane_b.normal.dot(along));
-    return relation;
-}
 
 MapQueries::MapQueries(const PlaneMap& map) : up_(map.up.cast<double>()) {
     entries_.reserve(map.planes.size());

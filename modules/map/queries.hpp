@@ -8,22 +8,9 @@
 #include <vector>
 
 #include "core/plane_map.hpp"
+#include "map/relation.hpp"
 
 namespace planemap::map {
-
-/// How two planes lie to each other: what Tables 3 and 4 of the paper measure.
-struct PlaneRelation {
-    /// Between the normals, radians in [0, pi]. Normals point to where a plane was seen from, so two walls of
-    /// a room that face each other are pi apart, the two sides of a partition too, and a floor and a wall
-    /// pi / 2.
-    double angle = 0;
-    /// For planes parallel within 15 deg, whichever way they face: metres between the infinite planes on the
-    /// line along their mean normal through the middle between the centres of their boxes. Others meet
-    /// somewhere, and have no one distance; see MapQueries::gap().
-    std::optional<double> distance;
-};
-
-PlaneRelation relation(const MapPlane& a, const MapPlane& b);
 
 /// Answers about one map, in its world frame, metres. Building it unpacks all outlines (about half a
 /// microsecond a plane); a question then takes some microseconds for a map of 300 planes, as boxes

@@ -48,7 +48,10 @@ TEST(PlanesJson, InferredRingsAreBesideWhatIsSeen) {
     ASSERT_EQ(wall["inferred_rings"].size(), 1u);
     ASSERT_EQ(wall["inferred_rings"][0].size(), 3u);
     for (const auto& p : wall["inferred_rings"][0]) EXPECT_NEAR(p[0], 1, 1e-6) << "in the world";
+    EXPECT_NEAR(wall["inferred_area"], 0.0625, 1e-6);
+    EXPECT_EQ(without["planes"][1]["inferred_area"], 0);
     wall.erase("inferred_rings");
+    wall["inferred_area"] = 0.0;
     EXPECT_EQ(wall, without["planes"][1]) << "nothing else changes";
     EXPECT_EQ(with["planes"][0], without["planes"][0]);
     for (const std::string& svg : {overhead_svg(map, {}), perspective_svg(map, {})})

@@ -10,7 +10,6 @@
 namespace planemap::map {
 namespace {
 
-using scene::kDegree;
 using scene::level;
 using scene::Rectangle;
 using ::testing::ElementsAre;
@@ -188,30 +187,6 @@ TEST(FreeHeight, IsUpToTheTableOrTheCeiling) {
         EXPECT_NEAR(height(1, 1, -0.02), 0.77, 1e-4) << "a point a little below the floor";
         EXPECT_NEAR(height(-2, 0, 0), 2.5, 1e-4);
         EXPECT_EQ(height(0.4, 0, 0), kInfinity);
-    }
-}
-
-TEST(Relation, OfParallelAndOfOtherPlanes) {
-    const PlaneMap map =
-        scene::map_of({scene::upright(0, 0, 0, 0, 4, 2), scene::upright(3, 1, 0, std::numbers::pi, 2, 2),
-                       scene::upright(2, 0, 0, 5 * kDegree, 1, 2),
-                       scene::upright(2, 3, 0, 56 * kDegree, 1, 2), level(0, 0, 0, 2, 2)});
-    const auto between = [&](std::size_t a, std::size_t b) { return relation(map.planes[a], map.planes[b]); };
-    EXPECT_NEAR(between(0, 1).angle, std::numbers::pi, 1e-6);
-    EXPECT_NEAR(between(0, 1).distance.value(), 3, 1e-6);
-    EXPECT_NEAR(between(0, 2).angle, 5 * kDegree, 1e-6);
-    EXPECT_NEAR(between(0, 2).distance.value(), 2, 0.01);
-    EXPECT_NEAR(between(0, 3).angle, 56 * kDegree, 1e-6);
-    EXPECT_FALSE(between(0, 3).distance);
-    EXPECT_NEAR(between(0, 4).angle, std::numbers::pi / 2, 1e-6);
-    test::Random random(6);
-    const PlaneMap others = random_map(random, 20);
-    for (const MapPlane& a : others.planes) {
-        for (const MapPlane& b : others.planes) {
-            EXPECT_EQ(relation(a, b).angle, relation(b, a).angle);
-            EXPECT_EQ(relation(a, b).distance.has_value(), relation(b, a).distance.has_value());
-            EXPECT_NEAR(relation(a, b).distance.value_or(0), relation(b, a).distance.value_or(0), 1e-9);
-        }
     }
 }
 
