@@ -77,8 +77,8 @@ struct RoomSpan {
 const char* kind_name(RoomSpan::Kind kind);
 
 /// What can be measured across the rooms of a map: pairs that lie opposite by 0.1 square metres or more, with
-/// no third plane of their kind (walls; floors and ceilings) between them on more than a quarter of that. By kind
-/// and ids. By the labels: where up is not known, there are none.
+/// no third plane of their kind (walls; floors and ceilings) parallel between them on more than a quarter of
+/// that. By kind and ids. By the labels: where up is not known, there are none.
 std::vector<RoomSpan> room_spans(const PlaneMap& map);
 
 }  // namespace planemap::map

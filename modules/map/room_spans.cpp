@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/geometry/plane_intersection.hpp"
 #include "map/opposite.hpp"
 #include "map/queries.hpp"
 #include "map/relation.hpp"
@@ -29,10 +30,15 @@ PlaneMap planes_of(const PlaneMap& map, bool level) {
     return some;
 }
 
-/// True when a third plane is between two on more than kDivided of what lies opposite.
-bool is_divided(const MapPlane& a, const MapPlane& b, const PlaneRelation& relation,
-                const MapQueries& planes) {
+/// True when third planes that are parallel to both are between two on more than kDivided of what lies
+/// opposite. An open door stands across, and divides nothing.
+bool is_divided(const MapPlane& a, const MapPlane& b, const PlaneRelation& relation, const PlaneMap& some) {
     const Eigen::Vector3d along = (relation.on_b - relation.on_a).normalized();
+    PlaneMap parallel;
+    for (const MapPlane& plane : some.planes)
+        if (std::abs(plane.plane().normal.dot(along)) > std::cos(kParallel_rad))
+            parallel.planes.push_back(plane);
+    const MapQueries planes(parallel);
     const Opposite opposite = opposite_of(a, b, along);
     const std::size_t step = opposite.cells.size() / kLooks + 1;
     const Plane plane_a = a.plane(), plane_b = b.plane();
@@ -61,7 +67,6 @@ std::optional<Kind> kind_of(const MapPlane& a, const MapPlane& b, const PlaneRel
 }
 
 void add_spans(const PlaneMap& some, std::vector<RoomSpan>& spans) {
-    const MapQueries queries(some);
     for (std::size_t i = 0; i < some.planes.size(); ++i) {
         for (std::size_t j = i + 1; j < some.planes.size(); ++j) {
             const MapPlane *a = &some.planes[i], *b = &some.planes[j];
@@ -69,7 +74,7 @@ void add_spans(const PlaneMap& some, std::vector<RoomSpan>& spans) {
             if (b->label == PlaneLabel::kFloor) std::swap(a, b);
             const PlaneRelation r = relation(*a, *b);
             const auto kind = kind_of(*a, *b, r);
-            if (kind && !is_divided(*a, *b, r, queries)) spans.push_back({*kind, a->id, b->id, r});
+            if (kind && !is_divided(*a, *b, r, some)) spans.push_back({*kind, a->id, b->id, r});
         }
     }
 }

@@ -13,7 +13,7 @@ fail() {
 }
 
 cmake --install "$build" --prefix "$work/prefix" >"$work/install.log" || fail "cmake --install: $(tail -n 3 "$work/install.log")"
-for file in bin/planemap-run bin/planemap-launch bin/planemap-spy bin/planemap-viewer bin/planemap-export bin/planemap-log bin/planemap-convert share/java/planemap_spy.jar \
+for file in bin/planemap-run bin/planemap-launch bin/planemap-spy bin/planemap-viewer bin/planemap-export bin/planemap-measure bin/planemap-log bin/planemap-convert share/java/planemap_spy.jar \
     bin/planemap-virtual-camera lib/planemap/libPlanemapVirtualCamera.so.0 share/planemap/lcmtypes/planemap_plane_map_t.lcm \
     include/planemap/lcmtypes/planemap/plane_map_t.hpp include/planemap/map/queries.hpp; do
     [[ -e "$work/prefix/$file" ]] || fail "$file is not installed"

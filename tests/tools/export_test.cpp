@@ -1,7 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // planemap-export makes of a stored map what planemap-run made of the map in memory.
 #include <gmock/gmock.h>
+#include <pcl/io/pcd_io.h>
+#include <pcl/point_types.h>
 
+#include <cmath>
+#include <cstring>
+#include <set>
+#include <tuple>
+
+#include "core/cloud_point.hpp"
+#include "core/id_color.hpp"
+#include "exports/corner.hpp"
 #include "map/map_file.hpp"
 #include "messages/log.hpp"
 #include "tools/programs.hpp"
@@ -135,6 +145,147 @@ TEST_F(ExportTest, ComparesWithTheOctomapBesideTheMap) {
             << key;
     }
     EXPECT_THAT(bytes("out/report.md"), HasSubstr("Every ratio below is at that coverage"));
+}
+
+TEST_F(ExportTest, WritesOnlyTheFormatsThatAreAskedFor) {
+    const std::string stored = PLANEMAP_SOURCE "/tests/stored/plane_map.lcmlog";
+    const auto files = [&](const std::string& folder) {
+        std::set<std::string> names;
+        for (const auto& entry : std::filesystem::directory_iterator(folder_ / folder))
+            if (entry.path().filename().string().front() != '.') names.insert(entry.path().filename());
+        return names;
+    };
+    const Outcome two = run("planemap-export", stored + " --format obj,svg -o " + path("two"));
+    ASSERT_EQ(two.exit_code, 0) << two.err;
+    EXPECT_EQ(files("two"), (std::set<std::string>{"planes.obj", "planes.mtl", "overhead.svg", "map.svg"}));
+    EXPECT_THAT(two.out, testing::StartsWith("In "));
+    // What is not asked for stays, whoever's it is.
+    write_file(folder_ / "two/planes.json", "mine");
+    ASSERT_EQ(run("planemap-export", stored + " --format ply -q -o " + path("two")).exit_code, 0);
+    EXPECT_EQ(bytes("two/planes.json"), "mine");
+    EXPECT_EQ(files("two").size(), 6u);
+    expect_error("planemap-export", stored + " --format json -o " + path("two"), "planes.json: is there");
+    EXPECT_EQ(bytes("two/planes.json"), "mine");
+    // All of them together are what is written without --format.
+    ASSERT_EQ(run("planemap-export", stored + " -q -o " + path("all")).exit_code, 0);
+    ASSERT_EQ(run("planemap-export",
+                  stored + " --format map,json,ply,obj,gltf,geojson,svg,report -q -o " + path("each"))
+                  .exit_code,
+              0);
+    EXPECT_EQ(files("all"), files("each"));
+    for (const char* file : {"planes.json", "planes.ply", "planes.glb", "floor_plan.geojson", "map.svg"})
+        EXPECT_EQ(bytes("all/" + std::string(file)), bytes("each/" + std::string(file))) << file;
+}
+
+TEST_F(ExportTest, SaysWhatIsWrongWithFormats) {
+    const std::string stored = PLANEMAP_SOURCE "/tests/stored/plane_map.lcmlog", out = " -o " + path("out");
+    expect_error("planemap-export", stored, "--output is required");
+    expect_error("planemap-export", stored + out + " --format glft",
+                 "\"glft\" is no format, did you mean gltf?");
+    expect_error("planemap-export", stored + out + " --format ply,,obj", "\"\" is no format");
+    expect_error("planemap-export", stored + out + " --format ply,ply", "ply is given twice");
+    expect_error("planemap-export", stored + out + " --format cloud-ply", "give --cloud");
+    expect_error("planemap-export", stored + out + " --format ply --cloud sim:office", "in vain");
+    expect_error("planemap-export", stored + out + " --cloud sim:office --trajectory " + path("none.txt"),
+                 "none.txt");
+    expect_error("planemap-export", stored + out + " --cloud openni2", "live camera");
+    expect_error("planemap-export", stored + out + " --cloud " + path("none.lcmlog"), "none.lcmlog");
+    expect_error("planemap-export", stored + out + " --cloud sim:office --cloud-voxel-m 0", "voxel");
+    expect_error("planemap-export",
+                 stored + out + " --cloud 'sim:office?frames=2' --trajectory " +
+                     std::string(PLANEMAP_SOURCE "/tests/fuzz/corpus/trajectory_file/tum.txt"),
+                 "has a pose");
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "out/cloud.ply"));
+    if (run("planemap-export", stored + out + " --format gpkg").exit_code !=
+        0)  // where it was built without GDAL
+        expect_error("planemap-export", stored + out + " --format gpkg", "-DPLANEMAP_GDAL=ON");
+}
+
+/// The points of a cloud.ply of ours: positions and planes.
+struct PlyPoint {
+    Eigen::Vector3f position;
+    Rgb color;
+    int plane;
+};
+std::vector<PlyPoint> read_ply(const std::string& bytes) {
+    const std::string lead = "element vertex ", end = "end_header\n";
+    const auto count = std::stoul(bytes.substr(bytes.find(lead) + lead.size()));
+    const char* at = bytes.data() + bytes.find(end) + end.size();
+    std::vector<PlyPoint> points(count);
+    for (PlyPoint& point : points) {
+        std::memcpy(point.position.data(), at, 12);
+        std::memcpy(&point.color, at + 12, 3);
+        std::memcpy(&point.plane, at + 15, 4);
+        at += 19;
+    }
+    EXPECT_EQ(at, bytes.data() + bytes.size());
+    return points;
+}
+
+TEST_F(ExportTest, ACloudLiesOnThePlanesThatExplainIt) {
+    map_the_office();
+    const std::string map = path("run/plane_map.lcmlog");
+    const auto make = [&](const std::string& folder, const std::string& more) {
+        return run("planemap-export", map + " --cloud 'sim:office?frames=20' -q -o " + path(folder) + more);
+    };
+    const Outcome outcome = make("out", " --format cloud-ply,cloud-pcd");
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_EQ(outcome.err, "");
+    const std::vector<PlyPoint> points = read_ply(bytes("out/cloud.ply"));
+    ASSERT_GT(points.size(), 5000u);
+    const PlaneMap office = map::read_plane_map(map);
+    const Eigen::Matrix3d level_from_world = scene::said_rotation(bytes("out/cloud.ply"));
+    std::size_t explained = 0;
+    for (const PlyPoint& point : points) {
+        if (point.plane < 0) {
+            EXPECT_EQ(point.color, CloudPoint::kNoColor);
+            continue;
+        }
+        ++explained;
+        const MapPlane* plane = office.find(point.plane);
+        ASSERT_NE(plane, nullptr);
+        EXPECT_EQ(point.color, id_color(point.plane));
+        const Eigen::Vector3d p_world = level_from_world.transpose() * point.position.cast<double>();
+        EXPECT_LT(std::abs(plane->plane().signed_distance(p_world)), 0.15);
+        EXPECT_LT(distance(*plane, p_world), 0.2);
+    }
+    EXPECT_GT(static_cast<double>(explained), 0.6 * static_cast<double>(points.size()));
+
+    // The Point Cloud Library reads the other one, in the world frame.
+    pcl::PointCloud<pcl::PointXYZRGBL> cloud;
+    ASSERT_EQ(pcl::io::loadPCDFile(path("out/cloud.pcd"), cloud), 0);
+    ASSERT_EQ(cloud.size(), points.size());
+    for (std::size_t i = 0; i < points.size(); i += 97) {
+        const Eigen::Vector3d p = level_from_world * cloud[i].getVector3fMap().cast<double>();
+        EXPECT_LT((p - points[i].position.cast<double>()).norm(), 1e-4);
+        EXPECT_EQ(static_cast<int>(cloud[i].label), points[i].plane);
+        EXPECT_EQ(Rgb(cloud[i].r, cloud[i].g, cloud[i].b), points[i].color);
+    }
+
+    // The same bytes again; of each cube one point; no more than are allowed.
+    ASSERT_EQ(make("again", "").exit_code, 0);
+    EXPECT_EQ(bytes("again/cloud.pcd"), bytes("out/cloud.pcd"));
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "again/planes.ply"));
+    std::set<std::tuple<int, int, int>> cubes;
+    for (const auto& p : cloud)
+        cubes.emplace(std::floor(p.x / 0.02), std::floor(p.y / 0.02), std::floor(p.z / 0.02));
+    EXPECT_GT(static_cast<double>(cubes.size()), 0.95 * static_cast<double>(cloud.size()))
+        << "but for what lies on the edge of two";
+    const Outcome few = make("few", " --format cloud-pcd --cloud-most 1000");
+    EXPECT_EQ(few.exit_code, 0);
+    EXPECT_THAT(few.err, HasSubstr("more than 1000"));
+    ASSERT_EQ(pcl::io::loadPCDFile(path("few/cloud.pcd"), cloud), 0);
+    EXPECT_LE(cloud.size(), 1000u);
+    EXPECT_GT(cloud.size(), 100u);
+}
+
+TEST_F(ExportTest, AFrameWithoutAPoseIsNotInTheCloud) {
+    map_the_office();
+    const std::string map = path("run/plane_map.lcmlog");
+    const Outcome outcome = run(
+        "planemap-export", map + " --cloud 'sim:office?frames=40' --format cloud-pcd -q -o " + path("out"));
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("20 of its 40 frames have no pose"));
 }
 
 TEST_F(ExportTest, BadInputIsOneLine) {

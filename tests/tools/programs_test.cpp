@@ -18,11 +18,11 @@ using testing::HasSubstr;
 using testing::Not;
 
 constexpr const char* kPrograms[] = {
-    "planemap-run",          "planemap-evaluate", "planemap-export", "planemap-report",
-    "planemap-simulate",     "planemap-segment",  "planemap-sensor", "planemap-log",
-    "planemap-segmentation", "planemap-odometry", "planemap-graph",  "planemap-map",
-    "planemap-octomap",      "planemap-convert",  "planemap-viewer", "planemap-virtual-camera",
-    "planemap-launch",       "planemap-calibrate"};
+    "planemap-run",          "planemap-evaluate",  "planemap-export", "planemap-report",
+    "planemap-simulate",     "planemap-segment",   "planemap-sensor", "planemap-log",
+    "planemap-segmentation", "planemap-odometry",  "planemap-graph",  "planemap-map",
+    "planemap-octomap",      "planemap-convert",   "planemap-viewer", "planemap-virtual-camera",
+    "planemap-launch",       "planemap-calibrate", "planemap-measure"};
 
 struct ProgramsTest : test::Programs {
     Json evaluate(const std::string& truth, const std::string& estimate) {

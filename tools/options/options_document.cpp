@@ -2,6 +2,7 @@
 #include "options/options_document.hpp"
 
 #include "camera/options.hpp"
+#include "export/cloud_options.hpp"
 #include "graph/graph.hpp"
 #include "map/map.hpp"
 #include "octomap/octomap_builder.hpp"
@@ -70,6 +71,7 @@ std::string options_document() {
     simulator::SimulatorOptions simulator;
     camera::CameraOptions camera;
     odometry::MotionPriorOptions motion;
+    CloudOptions cloud;
     return kIntroduction + section<segmentation::SegmentationOptions>("--segmentation-") +
            section<odometry::OdometryOptions>("--odometry-") +
            section(options_of(motion), "--",
@@ -81,6 +83,9 @@ std::string options_document() {
            section(sensor::encoding_of(sensor), "--", "Of `planemap-sensor` and `planemap-simulate`.") +
            section(options_of(camera), "--camera-",
                    "Of `planemap-sensor` and `planemap-run` on a live camera ([live.md](live.md)).") +
+           section(options_of(cloud), "--cloud-",
+                   "Of `planemap-export` with `--cloud` "
+                   "([formats.md](formats.md#what-planemap-export-adds)).") +
            section(options_of(simulator), "",
                    "Parameters of a name, as in `sim:office?frames=300&seed=7`; `planemap-simulate --help` "
                    "lists the worlds.");

@@ -186,8 +186,8 @@ int run(RunOptions options, const nlohmann::ordered_json& about) {
     for (const std::string& line : input->complaints()) spdlog::warn("{}", line);
     bus.complaints().log_totals();
 
-    const Outputs outputs =
-        write_outputs(folder, options.input, *input, pipeline, {depth, clock, growth, size_resolutions_m}, about);
+    const Outputs outputs = write_outputs(folder, options.input, *input, pipeline,
+                                          {depth, clock, growth, size_resolutions_m}, about);
     warn(folder.take_notes());
     if (!outputs.report.is_null()) warn(outputs.report.at("warnings").get<std::vector<std::string>>());
     std::vector<std::string> problems = problems_of(options, *input, pipeline, folder, outputs);
