@@ -6,7 +6,7 @@ namespace planemap {
 OptionList options_of(CloudOptions& options) {
     OptionList list("Cloud");
     list.add("voxel_m", options.voxel_m, {0.001, 1}, "Side of the cubes of which each has at most one point");
-    list.add("most", options.most, {1000, 2e7},
+    list.add("most", options.most, {1000, 1e7},
              "Most points; beyond, the cubes' sides are doubled until there are fewer");
     return list;
 }

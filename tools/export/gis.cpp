@@ -5,6 +5,7 @@
 #include <cpl_error.h>
 #include <ogrsf_frmts.h>
 
+#include <algorithm>
 #include <cmath>
 #include <ctime>
 #include <memory>
@@ -42,20 +43,32 @@ class Quiet {
     Quiet& operator=(const Quiet&) = delete;
 };
 
-[[noreturn]] void fail(const std::string& what) {
+/// What a user may see of a connection: no password.
+std::string shown_name(const std::string& database) {
+    constexpr std::size_t kLongest = 200;
+    const std::size_t at = database.find("password");
+    return shown_text(at == std::string::npos ? database : database.substr(0, at) + "password=...", kLongest);
+}
+
+/// GDAL's last reason as one line, without what is secret.
+std::string reason(const std::string& database) {
     constexpr std::size_t kLongest = 300;
-    const std::string reason = CPLGetLastErrorMsg();
-    throw std::runtime_error(reason.empty() ? what : what + ": " + shown_text(reason, kLongest));
+    std::string text = CPLGetLastErrorMsg();
+    if (const std::size_t at = text.find(database); !database.empty() && at != std::string::npos)
+        text.replace(at, database.size(), shown_name(database));
+    while (!text.empty() && text.back() == '\n') text.pop_back();
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    return shown_text(text, kLongest);
+}
+
+/// Throws what GDAL says of a file or database that it could not do something with.
+[[noreturn]] void fail(const std::string& what, const std::string& database = {}) {
+    const std::string why = reason(database);
+    throw std::runtime_error(why.empty() ? what : what + ": " + why);
 }
 
 void require(bool ok, const std::string& what) {
     if (!ok) fail(what);
-}
-
-/// What a user may see of a connection: no password.
-std::string shown_name(const std::string& database) {
-    const std::size_t at = database.find("password");
-    return shown_text(at == std::string::npos ? database : database.substr(0, at) + "password=...", 200);
 }
 
 struct CloseDataset {
@@ -71,7 +84,10 @@ using Feature = std::unique_ptr<OGRFeature, DestroyFeature>;
 class Layers {
   public:
     Layers(GDALDataset& dataset, std::string name, const PlaneMap& map, const Trajectory& trajectory)
-        : dataset_(dataset), name_(std::move(name)), map_(map), frame_(upright_frame(map, trajectory)) {
+        : dataset_(dataset),
+          name_(std::move(name)),
+          map_(map),
+          frame_(exports::upright_frame(map, trajectory)) {
         // What GeoPackage has for a plane in metres that is no place on Earth; databases have none of their
         // own.
         local_.SetLocalCS("Undefined Cartesian SRS");
@@ -84,11 +100,6 @@ class Layers {
     }
 
   private:
-    using UprightFrame = exports::UprightFrame;
-    static UprightFrame upright_frame(const PlaneMap& map, const Trajectory& trajectory) {
-        return exports::upright_frame(map, trajectory);
-    }
-
     OGRLayer& layer(const char* name, OGRwkbGeometryType type, const char* what, bool replace) {
         require(dataset_.TestCapability(ODsCCreateLayer) != 0, name_ + ": no layers can be made in it");
         std::string description = what;
@@ -186,9 +197,25 @@ class Layers {
     GDALDataset& dataset_;
     std::string name_;  ///< for messages
     const PlaneMap& map_;
-    UprightFrame frame_;
+    exports::UprightFrame frame_;
     OGRSpatialReference local_;
 };
+
+/// Throws for an active_schema that PostgreSQL does not have: tables would go to another one.
+void require_schema(GDALDataset& dataset, const std::string& database, const std::string& name) {
+    const std::string key = "active_schema=";
+    const std::size_t at = database.find(key);
+    if (at == std::string::npos || !EQUAL(dataset.GetDriverName(), "PostgreSQL")) return;
+    const std::size_t begin = at + key.size();
+    const std::string schema = database.substr(begin, database.find(' ', begin) - begin);
+    std::string active;
+    OGRLayer* answer = dataset.ExecuteSQL("SELECT current_schema()", nullptr, nullptr);
+    if (answer != nullptr) {
+        if (const Feature row{answer->GetNextFeature()}) active = row->GetFieldAsString(0);
+        dataset.ReleaseResultSet(answer);
+    }
+    if (active != schema) throw std::runtime_error(name + ": has no schema " + shown_text(schema));
+}
 
 }  // namespace
 
@@ -212,8 +239,10 @@ void write_to_database(const std::string& database, const PlaneMap& map, const T
                        bool replace) {
     const Quiet quiet(map.utime);
     const std::string name = shown_name(database);
-    Dataset dataset(GDALDataset::Open(database.c_str(), GDAL_OF_VECTOR | GDAL_OF_UPDATE));
-    require(dataset != nullptr, name);
+    Dataset dataset(
+        GDALDataset::Open(database.c_str(), GDAL_OF_VECTOR | GDAL_OF_UPDATE | GDAL_OF_VERBOSE_ERROR));
+    if (dataset == nullptr) fail(name, database);
+    require_schema(*dataset, database, name);
     for (const char* layer : {kPlanes, kLines}) {
         if (!replace && dataset->GetLayerByName(layer) != nullptr)
             throw std::runtime_error(name + ": has a table " + layer +

@@ -86,6 +86,6 @@ int main(int argc, char** argv) {
     if (parsed >= 0) return parsed;
     const nlohmann::ordered_json about = planemap::run_info(flags);
     planemap::messages::start_logging("planemap-export", false);
-    planemap::messages::catch_stop_signals();
+    if (!arguments.options.recording.empty()) planemap::messages::catch_stop_signals();
     return planemap::messages::run_main("planemap-export", [&] { return planemap::run(arguments, about); });
 }
