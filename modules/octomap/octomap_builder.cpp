@@ -157,4 +157,16 @@ std::size_t OctomapBuilder::working_bytes() const {
     return bytes;
 }
 
+std::unique_ptr<::octomap::OcTree> OctomapBuilder::grown(const GrowthListener& listener) const {
+    if (frozen_ > 0) return nullptr;
+    auto tree = std::make_unique<::octomap::OcTree>(options_.resolution_m);
+    KeyframeTracer tracer(options_);
+    for (const auto& [id, keyframe] : keyframes_.all()) {
+        listener(id, *tree);
+        tracer.trace(*tree, *keyframe.scan, keyframe.world_from_camera);
+        tracer.apply(*tree);
+    }
+    return tree;
+}
+
 }  // namespace planemap::octomap

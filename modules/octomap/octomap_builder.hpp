@@ -4,6 +4,7 @@
 #include <octomap/OcTree.h>
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <stop_token>
@@ -118,6 +119,12 @@ class OctomapBuilder {
     std::size_t rebuilds() const { return rebuilds_; }
     /// Scans that rebuilds inserted again: what they cost.
     std::size_t reinserted() const { return reinserted_ + (rebuild_ ? rebuild_->reinserted() : 0); }
+
+    using GrowthListener = std::function<void(ScanId next, const ::octomap::OcTree& so_far)>;
+    /// Builds the tree once more, scan by scan, each where it is now: as it would have grown if nothing had
+    /// moved. The listener is called before each scan. Neither pruned nor are its inner nodes up to date.
+    /// Nothing if there are frozen keyframes, whose depth is not known any more. As long as the scans take.
+    std::unique_ptr<::octomap::OcTree> grown(const GrowthListener& listener) const;
 
   private:
     bool insert_next(const std::stop_token& stop);

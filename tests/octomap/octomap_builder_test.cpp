@@ -262,6 +262,37 @@ TEST(OctomapBuilder, ManySmallStepsEndAtTheTreeOfOneBuild) {
     }
 }
 
+TEST(OctomapBuilder, GrownOnceMoreItEndsAsTheTreeIs) {
+    const CameraInfo camera = small_camera();
+    OctomapOptions options;
+    options.max_keyframes = 3;
+    OctomapBuilder builder(options);
+    std::vector<Pose> poses{pose(0, 0), pose(0.3, 0.1), pose(0.7, 0.3)};
+    for (int i = 0; i < 3; ++i)
+        builder.add(i, room(camera, static_cast<std::uint16_t>(100 * i)), camera,
+                    poses[static_cast<std::size_t>(i)]);
+    poses = {pose(0, 0), pose(0.25, 0.12), pose(0.6, 0.25)};
+    EXPECT_TRUE(builder.update(trajectory(poses)));
+    const auto grown_ids = [&] {
+        std::vector<int> ids;
+        std::size_t nodes = 0;
+        const auto tree = builder.grown([&](ScanId id, const ::octomap::OcTree& so_far) {
+            ids.push_back(id.keyframe);
+            EXPECT_EQ(so_far.size() == 0, ids.size() == 1);
+            EXPECT_GE(so_far.size(), nodes);
+            nodes = so_far.size();
+        });
+        builder.flush();
+        EXPECT_EQ(tree ? bt_of(*tree) : "", tree ? builder.bt() : "");
+        EXPECT_EQ(tree == nullptr, builder.frozen() > 0);
+        return ids;
+    };
+    EXPECT_EQ(grown_ids(), (std::vector<int>{0, 1, 2}));  // before the rebuild
+    EXPECT_EQ(grown_ids(), (std::vector<int>{0, 1, 2}));  // and after
+    builder.add(3, room(camera), camera, pose(1, 0));
+    EXPECT_EQ(grown_ids(), std::vector<int>()) << "the first one's depth is gone";
+}
+
 TEST(OctomapBuilder, AFrozenKeyframeDoesNotComeAgain) {
     OctomapOptions options;
     options.max_keyframes = 1;

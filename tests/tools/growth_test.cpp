@@ -19,7 +19,6 @@ Moment after(std::int64_t frames) {
     moment.frames = frames;
     moment.planes = static_cast<std::size_t>(frames);
     moment.map_bytes = 100 * moment.planes;
-    moment.has_octomap = true;
     moment.octomap_nodes = 1000 * moment.planes;
     moment.octomap_bytes = 2000 * moment.planes;
     moment.octomap_occupied_bytes = 500 * moment.planes;
@@ -30,7 +29,7 @@ Moment after(std::int64_t frames) {
 }
 
 TEST(Growth, TimesAFrameAreOfTheFramesSinceTheSampleBefore) {
-    const Json growth = growth_figures({after(4), after(5), after(25)});
+    const Json growth = growth_figures({after(4), after(5), after(25)}, true);
     EXPECT_EQ(growth["time_s"], Json({0, 0.1, 2.1}));
     EXPECT_EQ(growth["planes"], Json({4, 5, 25}));
     EXPECT_EQ(growth["map_bytes"], Json({400, 500, 2500}));
@@ -45,9 +44,7 @@ TEST(Growth, TimesAFrameAreOfTheFramesSinceTheSampleBefore) {
 }
 
 TEST(Growth, WithoutAnOctomapItsListsAreNull) {
-    Moment moment = after(1);
-    moment.has_octomap = false;
-    const Json growth = growth_figures({moment});
+    const Json growth = growth_figures({after(1)}, false);
     for (const char* key :
          {"octomap_nodes", "octomap_bytes", "octomap_occupied_bytes", "octomap_ms_per_frame"})
         EXPECT_TRUE(growth[key].is_null()) << key;
@@ -56,7 +53,7 @@ TEST(Growth, WithoutAnOctomapItsListsAreNull) {
 }
 
 TEST(Growth, OfNoFrameThereIsNothing) {
-    const Json growth = growth_figures(Growth().moments());
+    const Json growth = Growth().figures();
     EXPECT_TRUE(growth["time_s"].empty());
     EXPECT_EQ(growth_markdown({{"growth", growth}}), "");
     EXPECT_EQ(growth_markdown({{"growth", nullptr}}), "");
@@ -66,10 +63,10 @@ TEST(Growth, OfNoFrameThereIsNothing) {
 TEST(Growth, TheReportHasAFewOfTheSamplesAndTheLast) {
     std::vector<Moment> moments;
     for (int i = 1; i <= 100; ++i) moments.push_back(after(i));
-    const std::string text = growth_markdown({{"growth", growth_figures(moments)}});
+    const std::string text = growth_markdown({{"growth", growth_figures(moments, true)}});
     EXPECT_THAT(text, testing::HasSubstr("| 1.9 | 20 | 2.0 | 20000 | 40.0 |\n| 3.9 |"));
     EXPECT_THAT(text, testing::HasSubstr("| 9.9 | 100 | 10.0 | 100000 | 200.0 |\n\n"));
-    const std::string two = growth_markdown({{"growth", growth_figures({after(1), after(2)})}});
+    const std::string two = growth_markdown({{"growth", growth_figures({after(1), after(2)}, true)}});
     EXPECT_THAT(two,
                 testing::HasSubstr("| 0.0 | 1 | 0.1 | 1000 | 2.0 |\n| 0.1 | 2 | 0.2 | 2000 | 4.0 |\n\n"));
 }

@@ -7,18 +7,20 @@
 namespace planemap::evaluation {
 
 MapFace::MapFace(const MapPlane& map_plane)
-    : id(map_plane.id), plane(map_plane.plane()), world_from_plane(map_plane.world_from_plane()) {
-    plane_from_world = world_from_plane.inverse(Eigen::Isometry);
-    const Outline outline = map_plane.outline.rings();
-    raster = rasterised(outline);
-    for (const Ring& ring : outline.rings)
+    : id(map_plane.id),
+      plane(map_plane.plane()),
+      plane_from_world(map_plane.world_from_plane().inverse(Eigen::Isometry)),
+      world_from_plane(map_plane.world_from_plane()),
+      raster(rasterised(map_plane.outline.rings())),
+      outline(map_plane.outline.rings()) {
+    const Outline rings = map_plane.outline.rings();
+    for (const Ring& ring : rings.rings)
         for (const Eigen::Vector2d& v : ring) reach = std::max(reach, v.norm());
 }
 
 bool MapFace::covers(const Eigen::Vector3d& p_world) const {
-    const Eigen::Vector3d p = plane_from_world * p_world;
-    const auto cell_of = [&](double metres) { return static_cast<int>(std::floor(metres / raster.cell_m)); };
-    return raster.at(cell_of(p.x()), cell_of(p.y()));
+    const Eigen::Vector2d p = (plane_from_world * p_world).head<2>();
+    return p.norm() <= reach && outline.contains(p);
 }
 
 std::vector<MapFace> faces_of(const PlaneMap& map) {

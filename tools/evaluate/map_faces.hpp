@@ -4,18 +4,20 @@
 #include <optional>
 #include <vector>
 
+#include "core/geometry/outline_index.hpp"
 #include "core/plane_map.hpp"
 #include "evaluate/plane_raster.hpp"
 
 namespace planemap::evaluation {
 
-/// A plane of the map as it is asked for points: its outline on cells of 2.5 cm.
+/// A plane of the map as it is asked for points and cells.
 struct MapFace {
     int id = -1;
     Plane plane;
     Pose plane_from_world, world_from_plane;
-    PlaneRaster raster;
-    double reach = 0;  ///< of the outline from its frame's origin, metres
+    PlaneRaster raster;    ///< of the outline, cells of 2.5 cm
+    OutlineIndex outline;  ///< in the plane's x and y
+    double reach = 0;      ///< of the outline from its frame's origin, metres
 
     explicit MapFace(const MapPlane& map_plane);
     /// Whether the point, moved onto the plane, is on its outline.

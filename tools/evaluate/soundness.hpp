@@ -102,7 +102,7 @@ struct Soundness {
     std::optional<double> confirmed_share() const;  ///< of all of the outlines' area
 };
 
-/// Holds a map against views, all in one world. Outlines are compared on cells of 2.5 cm.
+/// Holds a map against views, all in one world. Of outlines, cells of 2.5 cm are compared.
 /// - doubled: cells of the smaller of two outlines that lie within 15 cm of the other, on its outline, where
 ///   the two face the same way within 12 deg. Two that three or more views saw side by side are two surfaces
 ///   (a board before a wall): readings within 2 sigma of either that are neighbours in the image, where the

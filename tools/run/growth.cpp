@@ -2,6 +2,8 @@
 #include "run/growth.hpp"
 
 #include <algorithm>
+#include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "messages/convert.hpp"
@@ -27,41 +29,62 @@ std::string kilobytes(const Json& bytes) {
 
 }  // namespace
 
-Moment Growth::costs(pipeline::Pipeline& pipeline) const {
+namespace {
+
+/// What a frame costs, without sizes. Precondition: there was one.
+Moment moment_of(pipeline::Pipeline& pipeline) {
     const auto cpu_ms = [](messages::Shell& shell) { return shell.status().work_cpu_ms().sum(); };
     Moment moment;
     moment.utime = pipeline.latest()->utime;
     moment.frames = static_cast<std::int64_t>(pipeline.estimates().size());
     moment.segmentation_ms = cpu_ms(pipeline.segmentation());
     moment.map_ms = cpu_ms(pipeline.map());
-    if (pipeline.octomap() != nullptr) moment.octomap_ms = cpu_ms(*pipeline.octomap());
     return moment;
 }
 
-void Growth::take_sizes(pipeline::Pipeline& pipeline, Moment& moment) {
+void take_sizes(pipeline::Pipeline& pipeline, Moment& moment) {
     const PlaneMap& map = pipeline.map().mapper().map();
     moment.planes = map.planes.size();
     moment.map_bytes = static_cast<std::size_t>(messages::to_message(map, 0).getEncodedSize());
-    if (pipeline.octomap() == nullptr) return;
-    const std::int64_t works = pipeline.octomap()->status().work_cpu_ms().count();
-    if (!octomap_ || works != octomap_works_) {
-        const octomap::OctomapSizes sizes = pipeline.octomap()->builder().sizes();
-        octomap_.emplace();
-        octomap_->octomap_nodes = sizes.bt_nodes;
-        octomap_->octomap_bytes = sizes.bt_bytes;
-        octomap_->octomap_occupied_bytes = sizes.bt_occupied_bytes;
-        octomap_works_ = works;
-    }
-    moment.has_octomap = true;
-    moment.octomap_nodes = octomap_->octomap_nodes;
-    moment.octomap_bytes = octomap_->octomap_bytes;
-    moment.octomap_occupied_bytes = octomap_->octomap_occupied_bytes;
 }
+
+/// Fills in the OctoMap's growth: a moment has the depth of the keyframes until then. False if it is not
+/// known.
+bool take_octomap(pipeline::Pipeline& pipeline, std::vector<Moment>& moments) {
+    if (pipeline.octomap() == nullptr) return false;
+    std::map<int, std::int64_t> utimes;
+    for (const KeyframePose& keyframe : pipeline.keyframes().keyframes) utimes[keyframe.id] = keyframe.utime;
+    double spent_ms = 0, since_ms = messages::thread_cpu_ms();
+    auto next = moments.begin();
+    const auto fill_in = [&](std::int64_t before_us, const ::octomap::OcTree& tree) {
+        spent_ms += messages::thread_cpu_ms() - since_ms;
+        if (next != moments.end() && next->utime < before_us) {
+            const octomap::OctomapSizes sizes = octomap::sizes_of(tree);
+            for (; next != moments.end() && next->utime < before_us; ++next) {
+                next->octomap_nodes = sizes.bt_nodes;
+                next->octomap_bytes = sizes.bt_bytes;
+                next->octomap_occupied_bytes = sizes.bt_occupied_bytes;
+                next->octomap_ms = spent_ms;
+            }
+        }
+        since_ms = messages::thread_cpu_ms();
+    };
+    const auto tree =
+        pipeline.octomap()->builder().grown([&](octomap::ScanId id, const ::octomap::OcTree& so_far) {
+            const auto keyframe =
+                utimes.find(id.keyframe);  // none: it went for another one, at about its time
+            fill_in(keyframe != utimes.end() ? keyframe->second : 0, so_far);
+        });
+    if (tree) fill_in(std::numeric_limits<std::int64_t>::max(), *tree);
+    return tree != nullptr;
+}
+
+}  // namespace
 
 void Growth::watch(pipeline::Pipeline& pipeline) {
     const auto frames = static_cast<std::int64_t>(pipeline.estimates().size());
     if (frames == (last_ ? last_->frames : 0)) return;
-    last_ = costs(pipeline);
+    last_ = moment_of(pipeline);
     if (!samples_.wants_next()) return;
     Moment moment = *last_;
     take_sizes(pipeline, moment);
@@ -70,23 +93,23 @@ void Growth::watch(pipeline::Pipeline& pipeline) {
 
 void Growth::finish(pipeline::Pipeline& pipeline) {
     if (pipeline.estimates().empty()) return;
-    const Moment now = costs(pipeline);
-    end_ = last_ ? *last_ : now;
-    end_->utime = now.utime;  // of frames that were held back until then
-    end_->frames = now.frames;
-    octomap_.reset();
-    take_sizes(pipeline, *end_);
+    moments_ = samples_.kept();
+    Moment end = moment_of(pipeline);
+    if (last_) {
+        end.segmentation_ms = last_->segmentation_ms;
+        end.map_ms = last_->map_ms;
+    }
+    take_sizes(pipeline, end);
+    if (!moments_.empty() && moments_.back().frames == end.frames) moments_.pop_back();
+    moments_.push_back(end);
+    has_octomap_ = take_octomap(pipeline, moments_);
 }
 
-std::vector<Moment> Growth::moments() const {
-    std::vector<Moment> moments = samples_.kept();
-    if (!end_) return moments;
-    if (!moments.empty() && moments.back().frames == end_->frames) moments.pop_back();
-    moments.push_back(*end_);
-    return moments;
+Json Growth::figures() const {
+    return growth_figures(moments_, has_octomap_);
 }
 
-Json growth_figures(const std::vector<Moment>& moments) {
+Json growth_figures(const std::vector<Moment>& moments, bool has_octomap) {
     Json figures;
     for (const char* key :
          {"time_s", "planes", "map_bytes", "octomap_nodes", "octomap_bytes", "octomap_occupied_bytes",
@@ -107,7 +130,7 @@ Json growth_figures(const std::vector<Moment>& moments) {
         figures["octomap_ms_per_frame"].push_back(per_frame(before, now, &Moment::octomap_ms));
         before = now;
     }
-    if (moments.empty() || !moments.back().has_octomap)
+    if (!has_octomap)
         for (const char* key :
              {"octomap_nodes", "octomap_bytes", "octomap_occupied_bytes", "octomap_ms_per_frame"})
             figures[key] = nullptr;

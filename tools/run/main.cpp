@@ -94,7 +94,6 @@ std::string map(const RunOptions& options, Input& input, pipeline::Pipeline& pip
     spdlog::debug("kept what was mapped so far {} times: {:.1f} ms of CPU, {:.1f} ms by the clock",
                   interim.times(), interim.cpu_ms(), interim.wall_ms());
     pipeline.finish();
-    growth.finish(pipeline);
     return error;
 }
 
@@ -178,6 +177,7 @@ int run(RunOptions options, const nlohmann::ordered_json& about) {
     Growth growth;
     const std::string error = map(options, *input, pipeline, folder, growth);
     clock.stop();
+    growth.finish(pipeline);
     if (const pipeline::GivenPoses* given = pipeline.given_poses();
         given != nullptr && given->missing() > 0 && !given->fit_nothing()) {
         spdlog::warn("{}: no pose within 0.1 s of {} keyframes, which are not in the map",

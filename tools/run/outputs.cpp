@@ -231,7 +231,7 @@ Reported report_of(const std::string& input_name, const Input& input, pipeline::
     add_sizes(pipeline, input.frames(), watch.size_resolutions_m, report);
     add_accuracy(input, pipeline, report);
     std::vector<CloudPoint> points = judge(pipeline, watch.depth, report);
-    report["growth"] = growth_figures(watch.growth.moments());
+    report["growth"] = watch.growth.figures();
     report["headline"] = headline_of(report);
     std::vector<std::string> warnings =
         warnings_of(estimates, pipeline.given_poses() != nullptr, pipeline.reason_lost(), report);
