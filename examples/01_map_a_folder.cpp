@@ -25,7 +25,7 @@ void map_recording(const char* input, const char* output) {
     pipeline.finish();
 
     const planemap::PlaneMap& map = pipeline.map().mapper().map();
-    planemap::map::write_plane_map(output, map);
+    planemap::map::write_plane_map(output, map, pipeline.map().mapper().seen_space());
     std::printf("%zu poses, %zu planes in %s\n", pipeline.trajectory().size(), map.planes.size(), output);
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Asks a stored map: the plane nearest to a point, what a ray meets, and how two planes lie to each other.
+// Asks a stored map: the plane nearest to a point, what a ray meets and how far the way there is known to be
+// free, how high it is free above a point, and how two planes lie to each other.
 //   03_ask_a_map plane_map.lcmlog [X Y Z]     a point of the world frame (metres); default: 1 m before the
 //   first camera
 #include <cstdio>
@@ -11,18 +12,34 @@
 
 namespace {
 
+const char* name_of(planemap::map::Place place) {
+    using enum planemap::map::Place;
+    return place == kFree ? "free" : place == kOccupied ? "occupied" : "unknown";
+}
+
+void tell(const char* what, const planemap::map::MapQueries::Stretch& seen) {
+    std::printf("%s: free for %.3f m, then %s", what, seen.free, name_of(seen.end));
+    if (seen.hit)
+        std::printf("; plane %d after %.3f m\n", seen.hit->id, seen.hit->range);
+    else
+        std::puts("; no plane");
+}
+
 void ask(const char* file, const Eigen::Vector3d& p_world) {
     const planemap::PlaneMap map = planemap::map::read_plane_map(file);
-    const planemap::map::MapQueries queries(map);
+    const planemap::map::MapQueries queries(map, planemap::map::read_seen_space(file));
 
     const auto nearest = queries.nearest(p_world);
     if (nearest) std::printf("nearest: plane %d, %.3f m away\n", nearest->id, nearest->distance);
 
-    const auto hit = queries.cast(p_world, Eigen::Vector3d::UnitZ(), 20);
-    if (hit)
-        std::printf("ray along z: plane %d after %.3f m\n", hit->id, hit->range);
+    std::printf("the point is %s\n", name_of(queries.state_at(p_world)));
+
+    if (const auto ahead = queries.look_along(p_world, Eigen::Vector3d::UnitZ(), 20))
+        tell("ray along z", *ahead);
+    if (const auto above = queries.free_height(p_world))
+        tell("up", *above);
     else
-        std::puts("ray along z: nothing within 20 m");
+        std::puts("up: which way that is, is not known");
 
     for (std::size_t i = 1; i < map.planes.size(); ++i) {
         const planemap::MapPlane &a = map.planes[0], &b = map.planes[i];

@@ -19,8 +19,8 @@ ComponentMaps::ComponentMaps(const MapOptions& options) : options_(options) {
     options_.fold_after = 0;
 }
 
-void ComponentMaps::start_from(const PlaneMap& map) {
-    maps_.begin()->second.start_from(map);
+void ComponentMaps::start_from(const PlaneMap& map, const SeenSpace& seen) {
+    maps_.begin()->second.start_from(map, seen);
 }
 
 void ComponentMaps::add(const Keyframe& keyframe) {

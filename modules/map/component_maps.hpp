@@ -29,7 +29,7 @@ class ComponentMaps {
     explicit ComponentMaps(const MapOptions& options);
 
     /// See PlaneMapper::start_from(): the map of the first component starts so.
-    void start_from(const PlaneMap& map);
+    void start_from(const PlaneMap& map, const SeenSpace& seen = {});
 
     /// Takes a keyframe; it waits until a trajectory says where and of which component it is. Of more than
     /// 4096 that wait the oldest goes.

@@ -47,9 +47,11 @@ PlaneMapper::PlaneMapper(const MapOptions& options, PlaneIds ids, std::shared_pt
       keyframes_(options.max_extent_m),
       planes_(options, std::move(ids)),
       derived_(derivation_rules(options), adjacency_rules(options), inference_rules(options)),
+      seen_before_(options.see_through_m),
       told_(std::move(told)) {}
 
-void PlaneMapper::start_from(const PlaneMap& map) {
+void PlaneMapper::start_from(const PlaneMap& map, const SeenSpace& seen) {
+    seen_before_.start_from(seen);
     StartingPlanes start = starting_planes(map, options_.max_extent_m, options_.outline_cell_m);
     losses_.planes_refused += start.refused;
     coarsened_ += start.coarsened;
@@ -160,6 +162,7 @@ void PlaneMapper::fold() {
         const auto& [id, keyframe] = *keyframes.begin();
         if (!keyframe.world_from_camera) return;
         planes_.fold(id, keyframe);
+        for_each_view(keyframe, [&](const StoredKeyframe& view) { seen_before_.look(Viewpoint(view)); });
         keyframes_.retire_oldest();
         ++folded_;
     }
@@ -214,8 +217,15 @@ Surfaces PlaneMapper::surfaces() const {
     return surfaces;
 }
 
+SeenSpace PlaneMapper::seen_space() const {
+    SeenThrough seen = seen_before_;
+    for (const Viewpoint& view : viewpoints(keyframes_)) seen.look(view);
+    return seen.space();
+}
+
 std::size_t PlaneMapper::working_bytes() const {
-    return keyframes_.memory_bytes() + planes_.memory_bytes() + derived_.working_bytes();
+    return keyframes_.memory_bytes() + planes_.memory_bytes() + derived_.working_bytes() +
+           seen_before_.memory_bytes();
 }
 
 }  // namespace planemap::map

@@ -10,12 +10,14 @@
 #include "core/keyframe.hpp"
 #include "core/look.hpp"
 #include "core/plane_map.hpp"
+#include "core/seen_space.hpp"
 #include "core/surfaces.hpp"
 #include "map/derived_map.hpp"
 #include "map/keyframe_store.hpp"
 #include "map/map_losses.hpp"
 #include "map/options.hpp"
 #include "map/planes.hpp"
+#include "map/seen_through.hpp"
 #include "map/told_up.hpp"
 
 namespace planemap::map {
@@ -46,8 +48,8 @@ class PlaneMapper {
     /// Starts from a finished map, in its world frame: its planes keep their ids and grow on. Call it first.
     /// Planes that are larger than max_extent_m, or further out than 100 km, count in rejected(). The shapes
     /// of a very large map go on in coarser cells, the largest first, so that its rasters take 128 MB (a
-    /// rebuild holds them twice); such planes count in coarsened().
-    void start_from(const PlaneMap& map);
+    /// rebuild holds them twice); such planes count in coarsened(). What was seen to be empty stays so.
+    void start_from(const PlaneMap& map, const SeenSpace& seen = {});
 
     /// Takes a keyframe; it waits if no trajectory has named its pose yet. Regions that are invalid
     /// (is_valid(PlanarRegion)), whose moments determine no plane, that reach further than 25 m or
@@ -99,6 +101,10 @@ class PlaneMapper {
     /// Of these what keyframes take, which only corrections of their poses need.
     std::size_t keyframe_bytes() const { return keyframes_.memory_bytes(); }
 
+    /// Space that keyframes and looks saw to be empty, see SeenThrough; also those that were folded, and
+    /// what the map to start from knew. It is found when asked for: some milliseconds a room.
+    SeenSpace seen_space() const;
+
     /// Exact moments of a plane's points, world frame; zero for an unknown id, and of a plane of start_from()
     /// those of points spread evenly over it.
     Moments moments(int plane_id) const;
@@ -139,6 +145,7 @@ class PlaneMapper {
     KeyframeStore keyframes_;
     Planes planes_;
     DerivedMap derived_;
+    SeenThrough seen_before_;  ///< of what keyframes_ does not hold any more
     std::shared_ptr<ToldUp> told_;
     MapLosses losses_;
     std::size_t coarsened_ = 0, folded_ = 0, replaced_ = 0, rebuilds_ = 0;

@@ -21,6 +21,7 @@ namespace planemap::map {
 
 namespace {
 constexpr std::int64_t kWritePeriodUs = 5000000;
+constexpr std::int64_t kTimesTheCost = 50;        ///< of a write, until the next one
 constexpr std::int64_t kSavePeriodUs = 1000000;   ///< of poses and plane ids to the journal
 constexpr std::int64_t kRetryPeriodUs = 1000000;  ///< after a write that failed
 /// In the journal, of each keyframe: as many as the map keeps.
@@ -51,7 +52,8 @@ MapShell::MapShell(messages::Bus& bus, const MapShellOptions& options)
       watch_(status_, options.start.empty()
                           ? "the map is incomplete"
                           : "what they saw is in the map only as far as the map to start from held it") {
-    if (!options.start.empty()) maps_.start_from(read_plane_map(options.start));
+    if (!options.start.empty())
+        maps_.start_from(read_plane_map(options.start), read_seen_space(options.start));
     tell_losses();
     status_.lost("fine edges of planes, since the map to start from is very large",
                  static_cast<std::int64_t>(mapper().coarsened()));
@@ -294,7 +296,8 @@ int MapShell::poll() {
         publish_maps(seq_ - 1);
         published_us_ = messages::now_us();
     }
-    const std::int64_t period = write_error_.empty() ? kWritePeriodUs : kRetryPeriodUs;
+    const std::int64_t period =
+        write_error_.empty() ? std::max(kWritePeriodUs, kTimesTheCost * write_cost_us_) : kRetryPeriodUs;
     if (unwritten_ && !output_.empty() && messages::now_us() - last_write_us_ >= period) try_write();
     return 100;
 }
@@ -358,9 +361,11 @@ void MapShell::write_failed(const std::string& why) {
 }
 
 void MapShell::write() {
+    const std::int64_t start = messages::now_us();
     make_folder(output_);  // somebody may have removed it
     if (make_way()) write_maps();
     last_write_us_ = messages::now_us();
+    write_cost_us_ = last_write_us_ - start;
     unwritten_ = false;
 }
 
@@ -371,7 +376,7 @@ void MapShell::write_maps() {
         const std::filesystem::path file = output_ / component_file(kFile, number);
         std::error_code ignored;
         if (number <= maps.size())
-            write_plane_map(file, maps[number - 1]->map());
+            write_plane_map(file, maps[number - 1]->map(), maps[number - 1]->seen_space());
         else
             std::filesystem::remove(file, ignored);
     }

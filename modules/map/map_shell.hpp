@@ -93,7 +93,7 @@ class MapShell : public messages::Shell {
     std::int32_t seq_ = 0, surfaces_seq_ = 0;
     std::size_t told_rebuilds_ = 0;  ///< when the surfaces were last told
     std::int64_t published_us_ = 0;  ///< wall clock of the last map; 0: none yet
-    std::int64_t last_write_us_ = 0;
+    std::int64_t last_write_us_ = 0, write_cost_us_ = 0;
     std::string write_error_;  ///< of the last attempt; empty if it went well
     bool unwritten_ = false;
     bool is_ours_ = false;  ///< the file is this process's, or what was there is kept

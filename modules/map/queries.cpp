@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/geometry/segment.hpp"
 
@@ -11,6 +12,8 @@ namespace planemap::map {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kSurface_m = 0.05;  // so near to a plane, a place is taken by it
+constexpr double kBefore_m = 0.25;   // a voxel so near before one may not be free for the noise of depth
 
 /// The point of the outline's area that is nearest to p.
 Eigen::Vector2d nearest_in(const Outline& outline, const Eigen::Vector2d& p) {
@@ -83,7 +86,8 @@ double distance_inside(const Eigen::Vector3d& a0, const Eigen::Vector3d& a1, con
 
 }  // namespace
 
-MapQueries::MapQueries(const PlaneMap& map) : up_(map.up.cast<double>()) {
+MapQueries::MapQueries(const PlaneMap& map, SeenSpace seen)
+    : seen_(std::move(seen)), up_(map.up.cast<double>()) {
     entries_.reserve(map.planes.size());
     for (const MapPlane& plane : map.planes) {
         Entry entry;
@@ -168,10 +172,50 @@ std::optional<MapQueries::Hit> MapQueries::cast(const Eigen::Vector3d& origin,
     return first;
 }
 
-std::optional<double> MapQueries::free_height(const Eigen::Vector3d& p_floor, double ignored) const {
-    if (up_.isZero() || !p_floor.allFinite()) return std::nullopt;
-    const auto hit = cast(p_floor + ignored * up_, up_);
-    return hit ? ignored + hit->range : kInfinity;
+/// Whether a point lies on the outline of a plane or near before it, on the side that it was seen from.
+bool MapQueries::is_before_plane(const Eigen::Vector3d& p_world) const {
+    return std::any_of(entries_.begin(), entries_.end(), [&](const Entry& entry) {
+        const Eigen::Vector3d p = entry.plane_from_world * p_world;
+        return p.z() >= -kSurface_m && p.z() <= kBefore_m && entry.bounds.contains(p.head<2>().eval()) &&
+               contains(entry.outline, p.head<2>());
+    });
+}
+
+Place MapQueries::state_at(const Eigen::Vector3d& p_world) const {
+    if (!p_world.allFinite()) return Place::kUnknown;
+    if (nearest(p_world, kSurface_m)) return Place::kOccupied;
+    return seen_.is_free(p_world) || is_before_plane(p_world) ? Place::kFree : Place::kUnknown;
+}
+
+std::optional<MapQueries::Stretch> MapQueries::look_along(const Eigen::Vector3d& origin,
+                                                          const Eigen::Vector3d& direction,
+                                                          double max_range) const {
+    constexpr double kStep_m = 0.5 * SeenSpace::kVoxel_m;
+    const double length = direction.norm();
+    if (!origin.allFinite() || !std::isfinite(length) || length == 0 || !(max_range >= 0))
+        return std::nullopt;
+    Stretch stretch;
+    stretch.hit = cast(origin, direction, max_range);
+    const double end = stretch.hit ? stretch.hit->range : max_range;
+    const Eigen::Vector3d ray = direction / length;
+    // Seen space is bounded, so this ends.
+    for (int step = 0; step * kStep_m < end; ++step) {
+        const Eigen::Vector3d p = origin + step * kStep_m * ray;
+        if (!seen_.is_free(p) && !is_before_plane(p)) return stretch;
+        stretch.free = std::min(end, (step + 1) * kStep_m);
+    }
+    stretch.end = stretch.hit ? Place::kOccupied : Place::kFree;
+    return stretch;
+}
+
+std::optional<MapQueries::Stretch> MapQueries::free_height(const Eigen::Vector3d& p_floor,
+                                                           double ignored) const {
+    if (up_.isZero()) return std::nullopt;
+    auto stretch = look_along(p_floor + ignored * up_, up_);
+    if (!stretch) return stretch;
+    stretch->free += ignored;
+    if (stretch->hit) stretch->hit->range += ignored;
+    return stretch;
 }
 
 std::optional<double> MapQueries::gap(int id_a, int id_b) const {

@@ -3,14 +3,23 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <vector>
 
 #include "core/plane_map.hpp"
+#include "core/seen_space.hpp"
 #include "map/relation.hpp"
 
 namespace planemap::map {
+
+/// What is known of a place.
+enum class Place : std::uint8_t {
+    kUnknown,   ///< nobody saw it: it may be free, or hold anything
+    kFree,      ///< it was seen to be empty
+    kOccupied,  ///< a plane is there
+};
 
 /// Answers about one map, in its world frame, metres. Building it unpacks all outlines (about half a
 /// microsecond a plane); a question then takes some microseconds for a map of 300 planes, as boxes
@@ -31,7 +40,28 @@ class MapQueries {
         bool from_front = true;  ///< hit on the side that the normal points to, the one that was seen
     };
 
-    explicit MapQueries(const PlaneMap& map);
+    /// What a ray from its origin meets.
+    struct Stretch {
+        double free = 0;              ///< metres along the ray that are known to be free
+        Place end = Place::kUnknown;  ///< what is behind these; kFree: nothing up to the largest range
+        /// The first plane within the largest range, also one behind what nobody saw.
+        std::optional<Hit> hit;
+    };
+
+    /// Without what was seen to be empty (of a file: read_seen_space()), only the space right before planes
+    /// is known to be free.
+    explicit MapQueries(const PlaneMap& map, SeenSpace seen = {});
+
+    /// Occupied within 5 cm of a plane's outline. Free in a voxel of 10 cm that was seen to be empty, and up
+    /// to 25 cm before the outline of a plane, which was seen through that. Nothing is said of what is no
+    /// plane but that it is not free: see SeenThrough.
+    Place state_at(const Eigen::Vector3d& p_world) const;
+
+    /// How far a ray is free, which takes some ten microseconds. Nothing for a direction of no length or
+    /// values that are not finite; max_range may be infinite.
+    std::optional<Stretch> look_along(const Eigen::Vector3d& origin_world,
+                                      const Eigen::Vector3d& direction_world,
+                                      double max_range = std::numeric_limits<double>::infinity()) const;
 
     /// The plane whose outline is nearest to the point; nothing if the map is empty or all are further than
     /// `within`.
@@ -46,10 +76,10 @@ class MapQueries {
     std::optional<Hit> cast(const Eigen::Vector3d& origin_world, const Eigen::Vector3d& direction_world,
                             double max_range = std::numeric_limits<double>::infinity()) const;
 
-    /// Distance along map.up from a point on the floor to the first plane above it; infinity if there is
-    /// none. What lies lower than `ignored` above the point is taken to be the floor itself. Nothing if up is
-    /// not known.
-    std::optional<double> free_height(const Eigen::Vector3d& p_floor_world, double ignored = 0.1) const;
+    /// look_along() map.up from a point on the floor: as far as space is free above it, whether a plane or
+    /// what nobody saw ends that, and the first plane above it. What lies lower than `ignored` above the
+    /// point is taken to be the floor itself, and free. Nothing if up is not known.
+    std::optional<Stretch> free_height(const Eigen::Vector3d& p_floor_world, double ignored = 0.1) const;
 
     /// The smallest distance between the outlines of two planes: 0 where they touch or cross. Nothing if
     /// either is not in the map.
@@ -64,8 +94,10 @@ class MapQueries {
         Outline outline;
     };
     const Entry* find(int id) const;
+    bool is_before_plane(const Eigen::Vector3d& p_world) const;
 
     std::vector<Entry> entries_;  ///< ascending id
+    SeenSpace seen_;
     Eigen::Vector3d up_;
 };
 

@@ -21,6 +21,8 @@ inline constexpr const char* kSurfaces = "PLANEMAP_SURFACES";                ///
 inline constexpr const char* kMap = "PLANEMAP_MAP";                          ///< planemap.plane_map_t
 inline constexpr const char* kOtherMaps =
     "PLANEMAP_MAP_OTHERS";  ///< planemap.plane_map_t, of other components
+inline constexpr const char* kSeenSpace =
+    "PLANEMAP_SEEN_SPACE";  ///< planemap.seen_space_t, beside the map in files
 inline constexpr const char* kOctomapSize = "PLANEMAP_OCTOMAP_SIZE";        ///< planemap.map_size_t
 inline constexpr const char* kPreviewColor = "PLANEMAP_PREVIEW_COLOR";      ///< bot_core.image_t
 inline constexpr const char* kPreviewDepth = "PLANEMAP_PREVIEW_DEPTH";      ///< bot_core.image_t

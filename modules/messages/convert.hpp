@@ -14,6 +14,7 @@
 #include <planemap/odometry_t.hpp>
 #include <planemap/planar_regions_t.hpp>
 #include <planemap/plane_map_t.hpp>
+#include <planemap/seen_space_t.hpp>
 #include <planemap/surfaces_t.hpp>
 #include <planemap/trajectory_t.hpp>
 #include <span>
@@ -27,6 +28,7 @@
 #include "core/look.hpp"
 #include "core/plane_map.hpp"
 #include "core/region.hpp"
+#include "core/seen_space.hpp"
 #include "core/surfaces.hpp"
 #include "messages/error.hpp"
 
@@ -75,6 +77,9 @@ trajectory_t to_message(const KeyframeTrajectory& trajectory, std::int32_t seq, 
 KeyframeTrajectory from_message(const trajectory_t& message);
 surfaces_t to_message(const Surfaces& surfaces, std::int32_t seq, std::int64_t session = 0);
 Surfaces from_message(const surfaces_t& message);
+seen_space_t to_message(const SeenSpace& seen, std::int64_t utime, std::int32_t seq,
+                        std::int64_t session = 0);
+SeenSpace from_message(const seen_space_t& message);
 
 /// The map packed: outlines and lines in steps of 5 mm, so that no vertex is further than 5 mm from where it
 /// was (up to 80 m from the middle of its plane), inliers to 0.2 %, and what follows from these left out; see

@@ -18,6 +18,7 @@
 #include <planemap/odometry_t.hpp>
 #include <planemap/planar_regions_t.hpp>
 #include <planemap/plane_map_t.hpp>
+#include <planemap/seen_space_t.hpp>
 #include <planemap/surfaces_t.hpp>
 #include <planemap/trajectory_t.hpp>
 #include <string>
@@ -172,6 +173,11 @@ void walk(Walker& w, const surfaces_t*) {
     w.skip(8 + 4, "surfaces");
     w.array(w.length("n_keyframes"), 4 + 2, "keyframes");
     w.array(w.length("n_regions"), 4, "planes");
+    w.skip(8, "session");
+}
+void walk(Walker& w, const seen_space_t*) {
+    w.skip(8 + 4 + kFloat + 4, "seen_space");
+    w.array(w.length("n_bytes"), 1, "zipped");
     w.skip(8, "session");
 }
 void walk(Walker& w, const plane_map_t*) {
@@ -334,6 +340,7 @@ PLANEMAP_DECODES(trajectory_t)
 PLANEMAP_DECODES(surfaces_t)
 PLANEMAP_DECODES(plane_map_t)
 PLANEMAP_DECODES(earlier_plane_map_t)
+PLANEMAP_DECODES(seen_space_t)
 PLANEMAP_DECODES(map_size_t)
 PLANEMAP_DECODES(module_status_t)
 

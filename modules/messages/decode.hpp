@@ -28,6 +28,7 @@ class surfaces_t;
 class trajectory_t;
 class plane_map_t;
 class earlier_plane_map_t;
+class seen_space_t;
 class map_size_t;
 class module_status_t;
 }  // namespace planemap

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "messages/image_codec.hpp"
 
-#include <libdeflate.h>
 #include <turbojpeg.h>
 
 #include <bit>
@@ -9,6 +8,8 @@
 #include <memory>
 #include <new>
 #include <string>
+
+#include "messages/zip.hpp"
 
 namespace planemap::messages {
 
@@ -99,21 +100,13 @@ GrayImage luma(const RgbImage& image) {
 }
 
 DepthImage decode_zipped_depth(std::span<const std::uint8_t> zipped, int width, int height) {
-    struct Deleter {
-        void operator()(libdeflate_decompressor* d) const { libdeflate_free_decompressor(d); }
-    };
-    thread_local std::unique_ptr<libdeflate_decompressor, Deleter> inflater(libdeflate_alloc_decompressor());
-    if (!inflater) throw std::bad_alloc();
     DepthImage depth(width, height);
-    // With no pointer for the actual size, libdeflate fails unless the stream fills the image exactly.
-    const auto result = libdeflate_zlib_decompress(inflater.get(), zipped.data(), zipped.size(),
-                                                   depth.pixels.data(), depth.pixels.size() * 2, nullptr);
-    switch (result) {
-        case LIBDEFLATE_SUCCESS:
+    switch (unzip(zipped, {reinterpret_cast<std::uint8_t*>(depth.pixels.data()), depth.pixels.size() * 2})) {
+        case Unzipped::kWhole:
             return depth;
-        case LIBDEFLATE_SHORT_OUTPUT:
+        case Unzipped::kShort:
             throw MessageError("zipped depth: fewer pixels than the image's size says");
-        case LIBDEFLATE_INSUFFICIENT_SPACE:
+        case Unzipped::kLong:
             throw MessageError("zipped depth: more pixels than the image's size says");
         default:
             throw MessageError("zipped depth: corrupt or cut short");
@@ -121,16 +114,7 @@ DepthImage decode_zipped_depth(std::span<const std::uint8_t> zipped, int width, 
 }
 
 std::vector<std::uint8_t> encode_zipped_depth(const DepthImage& depth, int level) {
-    struct Deleter {
-        void operator()(libdeflate_compressor* c) const { libdeflate_free_compressor(c); }
-    };
-    const std::unique_ptr<libdeflate_compressor, Deleter> deflater(libdeflate_alloc_compressor(level));
-    if (!deflater) throw std::bad_alloc();
-    const std::size_t bytes = depth.pixels.size() * 2;
-    std::vector<std::uint8_t> zipped(libdeflate_zlib_compress_bound(deflater.get(), bytes));
-    zipped.resize(
-        libdeflate_zlib_compress(deflater.get(), depth.pixels.data(), bytes, zipped.data(), zipped.size()));
-    return zipped;
+    return zip({reinterpret_cast<const std::uint8_t*>(depth.pixels.data()), depth.pixels.size() * 2}, level);
 }
 
 }  // namespace planemap::messages

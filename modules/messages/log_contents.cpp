@@ -20,6 +20,7 @@
 #include <planemap/odometry_t.hpp>
 #include <planemap/planar_regions_t.hpp>
 #include <planemap/plane_map_t.hpp>
+#include <planemap/seen_space_t.hpp>
 #include <planemap/surfaces_t.hpp>
 #include <planemap/trajectory_t.hpp>
 #include <vs/object_collection_t.hpp>
@@ -60,8 +61,8 @@ std::string type_name(std::uint64_t fingerprint) {
         add_names<kinect::frame_msg_t>("kinect", all);
         add_names<vs::object_collection_t, vs::point3d_list_collection_t>("vs", all);
         add_our_names<acceleration_t, camera_info_t, keyframe_t, look_t, map_size_t, module_status_t,
-                      odometry_t, planar_regions_t, plane_map_t, earlier_plane_map_t, surfaces_t,
-                      trajectory_t>(all);
+                      odometry_t, planar_regions_t, plane_map_t, earlier_plane_map_t, seen_space_t,
+                      surfaces_t, trajectory_t>(all);
         return all;
     }();
     const auto known = names.find(fingerprint);

@@ -132,6 +132,17 @@ void rebuild(benchmark::State& state) {
     state.counters["planes"] = static_cast<double>(mapper.map().planes.size());
 }
 
+/// What is asked when the map is written.
+void seen_space(benchmark::State& state) {
+    const Walk walked = walk(static_cast<int>(state.range(0)));
+    PlaneMapper mapper;
+    for (const Keyframe& keyframe : walked.keyframes) mapper.add(keyframe);
+    mapper.update(walked.trajectory);
+    double volume = 0;
+    for (auto _ : state) volume = mapper.seen_space().volume();
+    state.counters["m3"] = volume;
+}
+
 /// The last of so many keyframes.
 void keyframe(benchmark::State& state) {
     const Walk walked = walk(static_cast<int>(state.range(0)));
@@ -197,7 +208,7 @@ void cast(benchmark::State& state) {
     ask_all(state, [](auto& queries, auto& p, auto& q) { return queries.cast(p, q - p); });
 }
 void free_height(benchmark::State& state) {
-    ask_all(state, [](auto& queries, auto& p, auto&) { return queries.free_height(p); });
+    ask_all(state, [](auto& queries, auto& p, auto&) { return queries.free_height(p)->free; });
 }
 void gap(benchmark::State& state) {
     int i = 0;
@@ -209,6 +220,7 @@ void gap(benchmark::State& state) {
 
 BENCHMARK(rebuild)->Arg(200)->Arg(2000)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(keyframe)->Arg(200)->Arg(2000)->Unit(benchmark::kMillisecond)->Iterations(3);
+BENCHMARK(seen_space)->Arg(200)->Arg(2000)->Unit(benchmark::kMillisecond)->Iterations(2);
 BENCHMARK(name)->Arg(100)->Arg(300)->Unit(benchmark::kMicrosecond);
 BENCHMARK(build)->Arg(300)->Unit(benchmark::kMicrosecond);
 BENCHMARK(nearest)->Arg(300)->Unit(benchmark::kMicrosecond);

@@ -8,10 +8,12 @@
 #include "core/files.hpp"
 #include "core/scene.hpp"
 #include "messages/log.hpp"
+#include "messages/sample_messages.hpp"
 
 namespace planemap::map {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 class MapFile : public ::testing::Test {
@@ -67,6 +69,33 @@ TEST_F(MapFile, OfALogWithOtherThingsTheNewestMapIsRead) {
     write_file(file_, plane_map_log(map()) + messages::encode_event(other) + plane_map_log(newer) +
                           messages::encode_event(other));
     EXPECT_EQ(read_plane_map(file_).utime, 100);
+}
+
+TEST_F(MapFile, KeepsWhatWasSeenToBeEmptyBesideTheMap) {
+    const SeenSpace seen = test::sample_seen_space();
+    write_plane_map(file_, map(), seen);
+    EXPECT_EQ(read_seen_space(file_), seen);
+    EXPECT_EQ(plane_map_log(read_plane_map(file_)), plane_map_log(map())) << "the map is the same";
+    write_plane_map(file_, map());
+    EXPECT_TRUE(read_seen_space(file_).empty()) << "as of earlier files";
+    write_file(file_, plane_map_log(map(), seen) + plane_map_log(map()));
+    EXPECT_TRUE(read_seen_space(file_).empty()) << "that was another map's";
+}
+
+TEST_F(MapFile, SpoiltSeenSpaceIsRefusedInWordsAndTheMapIsNot) {
+    const std::string alone = plane_map_log(map()), both = plane_map_log(map(), test::sample_seen_space());
+    ASSERT_EQ(both.substr(0, alone.size()), alone);
+    for (std::size_t i = both.size() - 40; i < both.size() - 8; ++i) {  // of the stream
+        std::string spoilt = both;
+        spoilt[i] = static_cast<char>(spoilt[i] ^ 0x5a);
+        EXPECT_EQ(complaint(spoilt), "");
+        try {
+            read_seen_space(file_);
+            ADD_FAILURE() << i;
+        } catch (const std::runtime_error& error) {
+            EXPECT_THAT(error.what(), AllOf(HasSubstr(file_.string()), HasSubstr("seen space is corrupt")));
+        }
+    }
 }
 
 TEST_F(MapFile, SaysWhatIsWrong) {

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "core/furniture.hpp"
 #include "core/random_values.hpp"
 
@@ -183,11 +185,90 @@ TEST(FreeHeight, IsUpToTheTableOrTheCeiling) {
         const auto height = [&](double x, double y, double z) {
             return queries.free_height(world_from_room * Eigen::Vector3d(x, y, z)).value();
         };
-        EXPECT_NEAR(height(1, 1, 0), 0.75, 1e-4);
-        EXPECT_NEAR(height(1, 1, -0.02), 0.77, 1e-4) << "a point a little below the floor";
-        EXPECT_NEAR(height(-2, 0, 0), 2.5, 1e-4);
-        EXPECT_EQ(height(0.4, 0, 0), kInfinity);
+        EXPECT_NEAR(height(1, 1, 0).hit->range, 0.75, 1e-4);
+        EXPECT_NEAR(height(1, 1, -0.02).hit->range, 0.77, 1e-4) << "a point a little below the floor";
+        EXPECT_NEAR(height(-2, 0, 0).hit->range, 2.5, 1e-4);
+        EXPECT_FALSE(height(0.4, 0, 0).hit);
+        EXPECT_EQ(height(0.4, 0, 0).end, Place::kUnknown) << "nobody looked there";
     }
+}
+
+/// Voxels of a box that is aligned to blocks, all of them free.
+SeenSpace free_box(const std::array<int, 3>& low, const std::array<int, 3>& high) {
+    std::vector<SeenSpace::Block> blocks;
+    for (int z = low[2]; z < high[2]; ++z) {
+        for (int y = low[1]; y < high[1]; ++y) {
+            for (int x = low[0]; x < high[0]; ++x) {
+                SeenSpace::Block& block = blocks.emplace_back();
+                block.at = {static_cast<std::int16_t>(x), static_cast<std::int16_t>(y),
+                            static_cast<std::int16_t>(z)};
+                block.free.fill(~std::uint64_t{0});
+            }
+        }
+    }
+    return SeenSpace(blocks);
+}
+
+/// A floor, a table at 0.8 m over a part of it, a ceiling at 2.6 m over another; free from -1.6 to 1.6 m and
+/// up to 2.4 m, but above 1.6 m only where x > 0.
+MapQueries room_with_seen_space() {
+    PlaneMap map = scene::map_of(
+        {level(0, 0, 0, 3, 3), level(1, 1, 0.8, 0.5, 0.5), scene::facing_down(level(-1, 0, 2.6, 1, 3))});
+    map.up = Eigen::Vector3f::UnitZ();
+    std::vector<SeenSpace::Block> blocks = free_box({-2, -2, 0}, {2, 2, 2}).blocks();
+    const SeenSpace above = free_box({0, -2, 2}, {2, 2, 3});
+    blocks.insert(blocks.end(), above.blocks().begin(), above.blocks().end());
+    return MapQueries(map, SeenSpace(blocks));
+}
+
+TEST(StateAt, TellsFreeOccupiedAndUnknownApart) {
+    const MapQueries queries = room_with_seen_space();
+    EXPECT_EQ(queries.state_at({0, 0, 1}), Place::kFree);
+    EXPECT_EQ(queries.state_at({1, 1, 0.82}), Place::kOccupied) << "the table, though a voxel says free";
+    EXPECT_EQ(queries.state_at({1, 1, 0.76}), Place::kOccupied);
+    EXPECT_EQ(queries.state_at({-1, 0, 2}), Place::kUnknown);
+    EXPECT_EQ(queries.state_at({-1, 0, 2.45}), Place::kFree) << "the ceiling was seen through that";
+    EXPECT_EQ(queries.state_at({-1, 0, 2.7}), Place::kUnknown) << "above the ceiling";
+    EXPECT_EQ(queries.state_at({2.5, 2.5, 0.2}), Place::kFree) << "right above the floor";
+    EXPECT_EQ(queries.state_at({2.5, 2.5, 0.3}), Place::kUnknown);
+    EXPECT_EQ(queries.state_at({2.5, 2.5, -0.2}), Place::kUnknown);
+    EXPECT_EQ(queries.state_at({kInfinity, 0, 0}), Place::kUnknown);
+}
+
+TEST(LookAlong, EndsAtAPlaneAtWhatNobodySawOrAtTheLargestRange) {
+    const MapQueries queries = room_with_seen_space();
+    const auto down = queries.look_along({1, 1, 2}, {0, 0, -3}).value();
+    EXPECT_EQ(down.end, Place::kOccupied);
+    EXPECT_NEAR(down.free, 1.2, 1e-6);
+    EXPECT_EQ(down.hit->id, 1);
+    const auto aside = queries.look_along({0, 0, 1}, {1, 0, 0}).value();
+    EXPECT_EQ(aside.end, Place::kUnknown);
+    EXPECT_NEAR(aside.free, 1.6, 0.051);
+    EXPECT_FALSE(aside.hit);
+    const auto near = queries.look_along({0, 0, 1}, {1, 0, 0}, 1).value();
+    EXPECT_EQ(near.end, Place::kFree);
+    EXPECT_DOUBLE_EQ(near.free, 1);
+    EXPECT_EQ(queries.look_along({0, 0, 9}, {0, 0, 1}).value().free, 0);
+    const auto none = queries.look_along({0, 0, 1}, {1, 0, 0}, 0).value();
+    EXPECT_EQ(none.free, 0);
+    EXPECT_EQ(none.end, Place::kFree);
+    EXPECT_FALSE(queries.look_along({0, 0, 1}, {0, 0, 0}));
+    EXPECT_FALSE(queries.look_along({0, 0, 1}, {kInfinity, 0, 0}));
+    EXPECT_FALSE(queries.look_along({0, 0, 1}, {1, 0, 0}, -1));
+}
+
+TEST(FreeHeight, IsNotFreeWhereNobodySaw) {
+    const MapQueries queries = room_with_seen_space();
+    const auto below_ceiling = queries.free_height({-1, 0, 0}).value();
+    EXPECT_EQ(below_ceiling.end, Place::kUnknown);
+    EXPECT_NEAR(below_ceiling.free, 1.6, 0.051);
+    EXPECT_NEAR(below_ceiling.hit->range, 2.6, 1e-4) << "what is behind it is known all the same";
+    const auto open = queries.free_height({0.4, 0, 0}).value();
+    EXPECT_EQ(open.end, Place::kUnknown) << "no ceiling was seen, and nothing above 2.4 m";
+    EXPECT_NEAR(open.free, 2.4, 0.051);
+    const auto table = queries.free_height({1, 1, 0}).value();
+    EXPECT_EQ(table.end, Place::kOccupied);
+    EXPECT_NEAR(table.free, 0.8, 1e-4);
 }
 
 TEST(Gap, IsTheSmallestDistanceOfAllPairsOfPoints) {

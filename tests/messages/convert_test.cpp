@@ -10,6 +10,7 @@
 #include "core/stamp.hpp"
 #include "messages/decode.hpp"
 #include "messages/sample_messages.hpp"
+#include "messages/zip.hpp"
 #include "temporary_folder.hpp"
 
 namespace planemap::messages {
@@ -267,6 +268,32 @@ TEST(Convert, SurfacesOfWhichTheCountsDoNotAgreeAreRefused) {
     message = good;
     message.utime = INT64_MAX;
     EXPECT_THROW(from_message(message), MessageError);
+}
+
+TEST(Convert, SeenSpaceThereAndBack) {
+    for (const SeenSpace& seen : {test::sample_seen_space(), SeenSpace()}) {
+        const seen_space_t message = decode<seen_space_t>(to_bytes(to_message(seen, 4, 5, 6)));
+        EXPECT_EQ(message.utime, 4);
+        EXPECT_EQ(message.seq, 5);
+        EXPECT_EQ(message.session, 6);
+        EXPECT_EQ(from_message(message), seen);
+    }
+}
+
+TEST(Convert, SeenSpaceThatDoesNotMakeSenseIsRefused) {
+    const auto refused = [](const auto& spoil) {
+        seen_space_t message = to_message(test::sample_seen_space(), 1, 2);
+        spoil(message);
+        EXPECT_THROW(from_message(message), MessageError);
+    };
+    refused([](seen_space_t& m) { m.voxel_m = 0.2f; });
+    refused([](seen_space_t& m) { m.voxel_m = std::numeric_limits<float>::quiet_NaN(); });
+    for (const std::int32_t blocks : {-1, 0, 1, 3, 1000, 1 << 18, INT32_MAX})
+        refused([&](seen_space_t& m) { m.n_blocks = blocks; });
+    refused([](seen_space_t& m) { m.zipped.pop_back(); });
+    refused([](seen_space_t& m) { m.zipped.assign(m.zipped.size(), 0); });
+    refused([](seen_space_t& m) { m.zipped.clear(); });
+    refused([](seen_space_t& m) { m.zipped = zip(std::vector<std::uint8_t>(140), 1); });  // one block twice
 }
 
 TEST(Convert, LooksThereAndBack) {

@@ -96,6 +96,7 @@ TEST(Decode, SurvivesHostileBytes) {
     torment(to_message(test::sample_surfaces(), 6));
     torment(to_message(sample_map(), 7));
     torment(test::sample_earlier_map());
+    torment(to_message(test::sample_seen_space(), 7, 1));
     torment(sample_kinect());
     torment(sample_status());
     torment(map_size_t{});

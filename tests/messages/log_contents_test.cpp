@@ -17,6 +17,7 @@
 #include <planemap/odometry_t.hpp>
 #include <planemap/planar_regions_t.hpp>
 #include <planemap/plane_map_t.hpp>
+#include <planemap/seen_space_t.hpp>
 #include <planemap/surfaces_t.hpp>
 #include <planemap/trajectory_t.hpp>
 #include <vs/object_collection_t.hpp>
@@ -35,7 +36,8 @@ void expect_names(const std::string& package) {
 
 TEST(LogContents, EveryTypeThatAModulePublishesOrReadsHasAName) {
     expect_names<acceleration_t, camera_info_t, keyframe_t, look_t, map_size_t, module_status_t, odometry_t,
-                 planar_regions_t, plane_map_t, earlier_plane_map_t, surfaces_t, trajectory_t>("planemap");
+                 planar_regions_t, plane_map_t, earlier_plane_map_t, seen_space_t, surfaces_t, trajectory_t>(
+        "planemap");
     expect_names<bot_core::image_t, bot_core::images_t, bot_core::pose_t, bot_core::rigid_transform_t>(
         "bot_core");
     expect_names<kinect::frame_msg_t>("kinect");

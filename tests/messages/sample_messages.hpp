@@ -135,6 +135,14 @@ inline Surfaces sample_surfaces() {
     return {400, {{0, {3, -1, 5}}, {2, {}}, {7, {5}}}};
 }
 
+/// Two blocks, one of them full.
+inline SeenSpace sample_seen_space() {
+    SeenSpace::Block a{{-1, 300, 7}, {}}, b{{2, 0, -9}, {}};
+    for (std::size_t i = 0; i < a.free.size(); ++i) a.free[i] = 0x8001 * i;
+    b.free.fill(~std::uint64_t{0});
+    return SeenSpace({a, b});
+}
+
 template <typename T>
 std::vector<std::uint8_t> encoded(const T& message) {
     std::vector<std::uint8_t> bytes(static_cast<std::size_t>(message.getEncodedSize()));

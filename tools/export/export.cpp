@@ -88,7 +88,7 @@ std::vector<Result> further_components(const ExportOptions& options) {
         std::error_code ignored;
         if (!fs::exists(file, ignored)) break;
         MapSource source{std::make_shared<const PlaneMap>(map::read_plane_map(file)), nullptr,
-                         [] { return std::nullopt; }};
+                         [] { return std::nullopt; }, [file] { return map::read_seen_space(file); }};
         for (Result& result : essential_results(source, number)) results.push_back(std::move(result));
     }
     return results;
@@ -206,7 +206,7 @@ Exported export_map(const ExportOptions& options, const Json& about) {
     options.validate();
     Exported exported;
     MapSource source{std::make_shared<const PlaneMap>(map::read_plane_map(options.map)), nullptr,
-                     [] { return std::nullopt; }};
+                     [] { return std::nullopt; }, [&options] { return map::read_seen_space(options.map); }};
     const fs::path file = trajectory_file(options);
     Trajectory trajectory;
     if (!file.empty()) {

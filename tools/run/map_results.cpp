@@ -21,8 +21,10 @@ Result text_result(const std::string& name, std::function<std::string()> bytes) 
 
 std::vector<Result> essential_results(const MapSource& source, std::size_t number) {
     const std::shared_ptr<const PlaneMap> map = source.map;
-    std::vector<Result> results{{component_file("plane_map.lcmlog", number),
-                                 [map](const auto& file) { map::write_plane_map(file, *map); }}};
+    std::vector<Result> results{
+        {component_file("plane_map.lcmlog", number), [map, seen = source.seen](const auto& file) {
+             map::write_plane_map(file, *map, seen ? seen() : SeenSpace());
+         }}};
     if (source.trajectory) {
         results.push_back(
             {component_file("trajectory.txt", number),

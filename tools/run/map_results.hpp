@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/plane_map.hpp"
+#include "core/seen_space.hpp"
 #include "core/trajectory.hpp"
 #include "exports/exports.hpp"
 #include "results/result_folder.hpp"
@@ -22,6 +23,7 @@ struct MapSource {
     std::shared_ptr<const PlaneMap> map;
     std::function<Trajectory()> trajectory;  ///< asked when a file needs it; empty: not known
     std::function<std::optional<exports::Sightings>()> sightings;
+    std::function<SeenSpace()> seen = {};  ///< what was seen to be empty; empty: not known
 };
 
 /// What nobody wants to lose, small: plane_map.lcmlog, trajectory.txt where it is known, planes.json.

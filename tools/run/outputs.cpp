@@ -96,7 +96,7 @@ MapSource map_source(pipeline::Pipeline& pipeline, const map::PlaneMapper& mappe
     // The map in memory: what is exported from the stored one later is the same to 5 mm.
     return {std::make_shared<const PlaneMap>(mapper.map()),
             [&pipeline, component = mapper.map().component] { return trajectory_of(pipeline, component); },
-            [&mapper] { return mapper.sightings(); }};
+            [&mapper] { return mapper.sightings(); }, [&mapper] { return mapper.seen_space(); }};
 }
 
 }  // namespace
