@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <type_traits>
 #include <utility>
 
+#include "core/heap_bytes.hpp"
 #include "core/replacement.hpp"
 
 namespace planemap::map {
@@ -222,8 +224,14 @@ std::map<int, std::vector<int>> KeyframeStore::sightings() const {
 }
 
 std::size_t KeyframeStore::memory_bytes() const {
-    std::size_t bytes = poses_.size() * sizeof(std::pair<int, Pose>);
-    for (const auto& [id, keyframe] : keyframes_) bytes += map::memory_bytes(keyframe);
+    constexpr std::size_t kNode = 4 * sizeof(void*);  // of a std::map: colour, parent, two children
+    const auto nodes = [](const auto& map) {
+        using Value = typename std::decay_t<decltype(map)>::value_type;
+        return map.size() * heap_bytes(kNode + sizeof(Value));
+    };
+    std::size_t bytes = nodes(poses_) + nodes(keyframes_) + nodes(redirections_) +
+                        heap_bytes(named_.capacity() * sizeof(KeyframePose));
+    for (const auto& [id, keyframe] : keyframes_) bytes += map::memory_bytes(keyframe) - sizeof keyframe;
     return bytes;
 }
 

@@ -93,7 +93,7 @@ class KeyframeStore {
     const std::map<int, Pose>& poses() const { return poses_; }
     /// Ids of the keyframes that saw each plane, ascending, by the plane's id.
     std::map<int, std::vector<int>> sightings() const;
-    /// Bytes of all that is kept, by capacity, roughly.
+    /// Bytes of all that is kept, on the heap.
     std::size_t memory_bytes() const;
 
   private:

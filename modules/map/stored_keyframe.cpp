@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/geometry/packed_outline.hpp"
+#include "core/heap_bytes.hpp"
 
 namespace planemap::map {
 
@@ -172,9 +173,9 @@ void StoredKeyframe::take_later(StoredKeyframe look) {
 std::size_t memory_bytes(const StoredKeyframe& keyframe) {
     std::size_t bytes = 0;
     for_each_view(keyframe, [&](const StoredKeyframe& view) {
-        bytes += sizeof view + view.regions.capacity() * sizeof(StoredRegion) +
-                 view.vertices.capacity() * sizeof(std::int16_t) +
-                 view.sight_planes.capacity() * sizeof(Plane);
+        bytes += sizeof view + heap_bytes(view.regions.capacity() * sizeof(StoredRegion)) +
+                 heap_bytes(view.vertices.capacity() * sizeof(std::int16_t)) +
+                 heap_bytes(view.sight_planes.capacity() * sizeof(Plane));
     });
     return bytes;
 }

@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <memory>
 #include <set>
 
+#include "heap.hpp"
 #include "map/estimates.hpp"
 
 namespace planemap::map {
@@ -52,6 +54,18 @@ struct Mapping {
         EXPECT_NEAR(points_of(planes.estimates()), points_seen(), 1e-3) << "points are lost";
     }
 };
+
+TEST(Planes, OnTheHeapTheyTakeWhatIsSaid) {
+    if (!test::heap_is_told()) GTEST_SKIP() << "this program's malloc does not tell what it gave out";
+    Mapping mapping;
+    for (int i = 0; i < 12; ++i)
+        mapping.see(i, {wall_at(4.0 * i, 0, 3, 1.5), wall_at(4.0 * i, 0, 4.5, 1)}, Pose::Identity());
+    ASSERT_GE(mapping.planes.estimates().size(), 10u);
+    const std::size_t before = test::heap_in_use();
+    const auto alone = std::make_unique<Planes>(mapping.planes);
+    const auto taken = static_cast<double>(test::heap_in_use() - before);
+    EXPECT_NEAR(static_cast<double>(alone->memory_bytes()), taken, 0.1 * taken);
+}
 
 TEST(Planes, RegionsKnowTheirPlanesThroughMergersAndRebuilds) {
     Mapping mapping;
