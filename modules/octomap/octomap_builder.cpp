@@ -58,6 +58,7 @@ bool OctomapBuilder::update(const KeyframeTrajectory& trajectory) {
 }
 
 void OctomapBuilder::flush() {
+    if (listener_ && rebuild_due() && frozen_ == 0) regrow();
     while (rebuild_next({})) continue;
     while (insert_next({})) continue;
     tidy();
@@ -82,12 +83,29 @@ bool OctomapBuilder::insert_next(const std::stop_token& stop) {
     const KeptKeyframes::ById::value_type* next = keyframes_.next_waiting();
     if (next == nullptr) return false;
     const auto& [id, keyframe] = *next;
-    tracer_.trace(*tree_, *keyframe.scan, keyframe.world_from_camera, stop);
-    tracer_.apply(*tree_, nullptr, stop);
-    keyframes_.enter(id, tracer_.blocks());
-    stale_ = true;
+    insert(id, keyframe, stop);
     if (rebuild_) rebuild_->append(id, keyframe);
     return true;
+}
+
+void OctomapBuilder::insert(ScanId id, const KeptKeyframe& keyframe, const std::stop_token& stop) {
+    if (listener_) listener_(id, *tree_, false);
+    tracer_.trace(*tree_, *keyframe.scan, keyframe.world_from_camera, stop);
+    tracer_.apply(*tree_, nullptr, stop);
+    if (listener_) listener_(id, *tree_, true);
+    keyframes_.enter(id, tracer_.blocks());
+    stale_ = true;
+}
+
+/// All that is kept, each where it is, as a rebuild of all blocks. Precondition: nothing is frozen.
+void OctomapBuilder::regrow() {
+    reinserted_ += keyframes_.inside();
+    rebuild_.reset();
+    dirty_ = {};
+    tree_ = std::make_unique<::octomap::OcTree>(options_.resolution_m);
+    keyframes_.take_misplaced();
+    for (const auto& [id, keyframe] : keyframes_.all()) insert(id, keyframe, {});
+    ++rebuilds_;
 }
 
 bool OctomapBuilder::rebuild_next(const std::stop_token& stop) {
@@ -155,18 +173,6 @@ std::size_t OctomapBuilder::working_bytes() const {
     if (base_) bytes += base_->memoryUsage();
     if (rebuild_ && rebuild_->tree()) bytes += rebuild_->tree()->memoryUsage();
     return bytes;
-}
-
-std::unique_ptr<::octomap::OcTree> OctomapBuilder::grown(const GrowthListener& listener) const {
-    if (frozen_ > 0) return nullptr;
-    auto tree = std::make_unique<::octomap::OcTree>(options_.resolution_m);
-    KeyframeTracer tracer(options_);
-    for (const auto& [id, keyframe] : keyframes_.all()) {
-        listener(id, *tree);
-        tracer.trace(*tree, *keyframe.scan, keyframe.world_from_camera);
-        tracer.apply(*tree);
-    }
-    return tree;
 }
 
 }  // namespace planemap::octomap

@@ -120,14 +120,20 @@ class OctomapBuilder {
     /// Scans that rebuilds inserted again: what they cost.
     std::size_t reinserted() const { return reinserted_ + (rebuild_ ? rebuild_->reinserted() : 0); }
 
-    using GrowthListener = std::function<void(ScanId next, const ::octomap::OcTree& so_far)>;
-    /// Builds the tree once more, scan by scan, each where it is now: as it would have grown if nothing had
-    /// moved. The listener is called before each scan. Neither pruned nor are its inner nodes up to date.
-    /// Nothing if there are frozen keyframes, whose depth is not known any more. As long as the scans take.
-    std::unique_ptr<::octomap::OcTree> grown(const GrowthListener& listener) const;
+    /// Hears of each scan that enters the tree, in order of time, before and after it does. One that is not
+    /// above the last begins the growth anew.
+    using GrowthListener = std::function<void(ScanId id, const ::octomap::OcTree& tree, bool is_in)>;
+    /// With a listener flush() rebuilds the whole tree, scan by scan, so that it hears how it grows with all
+    /// scans where they are now; the tree is the same. What is heard is not the whole growth once keyframes
+    /// were frozen and the tree rebuilt. Of trees that advance() rebuilds nothing is heard.
+    void listen(GrowthListener listener) { listener_ = std::move(listener); }
+    /// Whether the listener heard all of the tree's growth.
+    bool is_growth_heard() const { return listener_ && (frozen_ == 0 || rebuilds_ == 0); }
 
   private:
     bool insert_next(const std::stop_token& stop);
+    void insert(ScanId id, const KeptKeyframe& keyframe, const std::stop_token& stop);
+    void regrow();
     bool rebuild_next(const std::stop_token& stop);
     void begin_rebuild();
     void end_rebuild();
@@ -142,6 +148,7 @@ class OctomapBuilder {
     std::unique_ptr<::octomap::OcTree> tree_;
     BlockSet dirty_;  ///< blocks to be built anew for keyframes that are not kept any more
     std::optional<TreeRebuild> rebuild_;
+    GrowthListener listener_;
     bool stale_ = false;  ///< inner nodes are not up to date
     std::size_t frozen_ = 0, rebuilds_ = 0;
     std::size_t reinserted_ = 0;  ///< by the rebuilds that ended

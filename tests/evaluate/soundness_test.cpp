@@ -169,7 +169,7 @@ TEST(Soundness, TheListenerHearsEveryReadingAsItWasJudged) {
     soundness(map_of_faces({wall(1, 2, 2)}), times(view, 2), {}, [&](const JudgedReading& reading) {
         ++readings;
         explained += reading.is_explained;
-        near += reading.face != nullptr;
+        near += reading.is_near;
         EXPECT_EQ(reading.face == nullptr, reading.range_m > 1.1);
         EXPECT_NEAR(reading.distance_m, reading.face != nullptr ? 1 - reading.p_world.z() : 0, 1e-6);
     });

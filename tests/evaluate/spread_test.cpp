@@ -27,7 +27,8 @@ TEST(Spread, OfManyItKeepsEveryNth) {
             ASSERT_GE(2 * kept.size(), std::min<std::size_t>(most, static_cast<std::size_t>(length)));
             EXPECT_EQ(kept.front(), 0);
             for (std::size_t i = 1; i < kept.size(); ++i) EXPECT_EQ(kept[i], static_cast<int>(i) * kept[1]);
-            if (kept.size() > 1) EXPECT_LT(length - 1 - kept.back(), kept[1]);
+            ASSERT_GT(kept.size(), 1u);
+            EXPECT_LT(length - 1 - kept.back(), kept[1]);
         }
     }
 }

@@ -262,35 +262,47 @@ TEST(OctomapBuilder, ManySmallStepsEndAtTheTreeOfOneBuild) {
     }
 }
 
-TEST(OctomapBuilder, GrownOnceMoreItEndsAsTheTreeIs) {
+TEST(OctomapBuilder, TheListenerHearsAllOfTheGrowthAndTheTreeIsTheSame) {
     const CameraInfo camera = small_camera();
     OctomapOptions options;
     options.max_keyframes = 3;
-    OctomapBuilder builder(options);
-    std::vector<Pose> poses{pose(0, 0), pose(0.3, 0.1), pose(0.7, 0.3)};
-    for (int i = 0; i < 3; ++i)
-        builder.add(i, room(camera, static_cast<std::uint16_t>(100 * i)), camera,
-                    poses[static_cast<std::size_t>(i)]);
-    poses = {pose(0, 0), pose(0.25, 0.12), pose(0.6, 0.25)};
-    EXPECT_TRUE(builder.update(trajectory(poses)));
-    const auto grown_ids = [&] {
-        std::vector<int> ids;
-        std::size_t nodes = 0;
-        const auto tree = builder.grown([&](ScanId id, const ::octomap::OcTree& so_far) {
+    OctomapBuilder heard(options), unheard(options);
+    std::vector<int> ids;
+    heard.listen([&](ScanId id, const ::octomap::OcTree& tree, bool is_in) {
+        if (!ids.empty() && !is_in && id.keyframe <= ids.back()) ids.clear();
+        EXPECT_TRUE(is_in || !ids.empty() || tree.size() == 0);
+        if (is_in) {
             ids.push_back(id.keyframe);
-            EXPECT_EQ(so_far.size() == 0, ids.size() == 1);
-            EXPECT_GE(so_far.size(), nodes);
-            nodes = so_far.size();
-        });
-        builder.flush();
-        EXPECT_EQ(tree ? bt_of(*tree) : "", tree ? builder.bt() : "");
-        EXPECT_EQ(tree == nullptr, builder.frozen() > 0);
-        return ids;
-    };
-    EXPECT_EQ(grown_ids(), (std::vector<int>{0, 1, 2}));  // before the rebuild
-    EXPECT_EQ(grown_ids(), (std::vector<int>{0, 1, 2}));  // and after
-    builder.add(3, room(camera), camera, pose(1, 0));
-    EXPECT_EQ(grown_ids(), std::vector<int>()) << "the first one's depth is gone";
+            EXPECT_GT(tree.size(), 0u);
+        }
+    });
+    const std::vector<Pose> before{pose(0, 0), pose(0.3, 0.1), pose(0.7, 0.3)},
+        after{pose(0, 0), pose(0.25, 0.12), pose(0.6, 0.25)};
+    for (OctomapBuilder* builder : {&heard, &unheard}) {
+        for (int i = 0; i < 2; ++i)
+            builder->add(i, room(camera), camera, before[static_cast<std::size_t>(i)]);
+    }
+    EXPECT_EQ(ids, (std::vector<int>{0, 1})) << "as they come";
+    for (OctomapBuilder* builder : {&heard, &unheard}) {
+        EXPECT_TRUE(builder->update(trajectory(after)));
+        builder->add(2, room(camera, 100), camera, after[2]);
+        builder->flush();
+    }
+    EXPECT_EQ(ids, (std::vector<int>{0, 1, 2})) << "where they are now";
+    EXPECT_EQ(heard.ot(), unheard.ot());
+    EXPECT_EQ(heard.rebuilds(), 1u);
+    EXPECT_TRUE(heard.is_growth_heard());
+    EXPECT_FALSE(unheard.is_growth_heard());
+    for (OctomapBuilder* builder : {&heard, &unheard}) {
+        EXPECT_TRUE(builder->update(trajectory(before)));
+        builder->flush();
+        builder->add(3, room(camera, 50), camera, pose(0.9, 0.3));
+        builder->add(4, room(camera, 20), camera, pose(1, 0.2));
+        builder->flush();
+    }
+    EXPECT_EQ(heard.ot(), unheard.ot());
+    EXPECT_EQ(heard.frozen(), 2u);
+    EXPECT_FALSE(heard.is_growth_heard()) << "the first ones' depth is gone";
 }
 
 TEST(OctomapBuilder, AFrozenKeyframeDoesNotComeAgain) {

@@ -53,7 +53,7 @@ TEST(Growth, WithoutAnOctomapItsListsAreNull) {
 }
 
 TEST(Growth, OfNoFrameThereIsNothing) {
-    const Json growth = Growth().figures();
+    const Json growth = growth_figures({}, true);
     EXPECT_TRUE(growth["time_s"].empty());
     EXPECT_EQ(growth_markdown({{"growth", growth}}), "");
     EXPECT_EQ(growth_markdown({{"growth", nullptr}}), "");

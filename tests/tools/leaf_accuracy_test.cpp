@@ -39,7 +39,7 @@ std::vector<JudgedReading> readings_on(const MapFace& face, double sigma, int co
         reading.face = &face;
         reading.distance_m = noise(random);
         reading.p_world = face.world_from_plane * Eigen::Vector3d(at(random), at(random), reading.distance_m);
-        reading.is_explained = true;
+        reading.is_explained = reading.is_near = true;
         readings.push_back(reading);
     }
     return readings;
@@ -90,10 +90,10 @@ TEST(LeafAccuracy, LeavesThatAreAsAccurateAreFoundBetweenTheSizes) {
     EXPECT_NEAR(figures["equal_resolution_m"]["by_rms"].get<double>(), 0.01 * std::sqrt(12), 0.002);
     EXPECT_TRUE(figures["octomap"].is_null());
     const std::vector<LeafRow> rows{{0.1, 4, 8}, {0.05, 2, 2}, {0.02, 1, 1}};
-    EXPECT_EQ(equal_resolution(rows, &LeafRow::rms_m, 3), 0.075);
-    EXPECT_EQ(equal_resolution(rows, &LeafRow::rms_m, 2), 0.05);
-    EXPECT_EQ(equal_resolution(rows, &LeafRow::rms_m, 1), 0.02);
-    EXPECT_EQ(equal_resolution(rows, &LeafRow::median_m, 8), 0.1);
+    EXPECT_DOUBLE_EQ(equal_resolution(rows, &LeafRow::rms_m, 3).value(), 0.075);
+    EXPECT_DOUBLE_EQ(equal_resolution(rows, &LeafRow::rms_m, 2).value(), 0.05);
+    EXPECT_DOUBLE_EQ(equal_resolution(rows, &LeafRow::rms_m, 1).value(), 0.02);
+    EXPECT_DOUBLE_EQ(equal_resolution(rows, &LeafRow::median_m, 8).value(), 0.1);
     EXPECT_FALSE(equal_resolution(rows, &LeafRow::rms_m, 4.001));
     EXPECT_FALSE(equal_resolution(rows, &LeafRow::rms_m, 0.999));
     EXPECT_FALSE(equal_resolution({}, &LeafRow::rms_m, 1));
@@ -102,7 +102,13 @@ TEST(LeafAccuracy, LeavesThatAreAsAccurateAreFoundBetweenTheSizes) {
 
 TEST(LeafAccuracy, WithoutReadingsNothingIsKnown) {
     LeafAccuracy accuracy(nullptr);
-    accuracy.add(JudgedReading());  // near no plane
+    JudgedReading reading;
+    accuracy.add(reading);  // on no outline
+    const MapFace face = face_with(Eigen::Vector3d::UnitZ());
+    reading.face = &face;
+    reading.distance_m = 0.06;
+    reading.is_explained = true;  // by a plane that is far away, and its band wide
+    accuracy.add(reading);
     const Json figures = accuracy.figures();
     EXPECT_EQ(figures["readings"], 0);
     EXPECT_TRUE(figures["planes"]["rms_m"].is_null());
@@ -125,6 +131,7 @@ TEST(LeafAccuracy, OfATreeTheNearestOccupiedLeafCounts) {
         JudgedReading reading;
         reading.face = &face;
         reading.p_world = {0.01, 0.02, z};
+        reading.is_near = true;
         accuracy.add(reading);
         const Json octomap = accuracy.figures()["octomap"];
         EXPECT_EQ(octomap["readings"].get<int>() + octomap["without_leaf"].get<int>(), 1);

@@ -125,8 +125,9 @@ class Readings {
             reading.face = &faces_[nearest->index];
             reading.distance_m = nearest->distance_m;
             reading.is_explained = distance <= band;
+            reading.is_near = distance <= limits_.near_m;
             range.counts.close += distance <= limits_.close_m;
-            range.counts.near += distance <= limits_.near_m;
+            range.counts.near += reading.is_near;
         }
         if (reading.is_explained) {
             ++range.counts.explained;

@@ -41,6 +41,7 @@ struct JudgedReading {
                                     ///< nullptr. Lives as long as the call
     double distance_m = 0;          ///< to that, signed: positive before it
     bool is_explained = false;      ///< within the band of it
+    bool is_near = false;           ///< within 5 cm of it
 };
 using ReadingListener = std::function<void(const JudgedReading&)>;
 

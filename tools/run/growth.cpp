@@ -48,61 +48,80 @@ void take_sizes(pipeline::Pipeline& pipeline, Moment& moment) {
     moment.map_bytes = static_cast<std::size_t>(messages::to_message(map, 0).getEncodedSize());
 }
 
-/// Fills in the OctoMap's growth: a moment has the depth of the keyframes until then. False if it is not
-/// known.
-bool take_octomap(pipeline::Pipeline& pipeline, std::vector<Moment>& moments) {
-    if (pipeline.octomap() == nullptr) return false;
-    std::map<int, std::int64_t> utimes;
-    for (const KeyframePose& keyframe : pipeline.keyframes().keyframes) utimes[keyframe.id] = keyframe.utime;
-    double spent_ms = 0, since_ms = messages::thread_cpu_ms();
-    auto next = moments.begin();
-    const auto fill_in = [&](std::int64_t before_us, const ::octomap::OcTree& tree) {
-        spent_ms += messages::thread_cpu_ms() - since_ms;
-        if (next != moments.end() && next->utime < before_us) {
-            const octomap::OctomapSizes sizes = octomap::sizes_of(tree);
-            for (; next != moments.end() && next->utime < before_us; ++next) {
-                next->octomap_nodes = sizes.bt_nodes;
-                next->octomap_bytes = sizes.bt_bytes;
-                next->octomap_occupied_bytes = sizes.bt_occupied_bytes;
-                next->octomap_ms = spent_ms;
-            }
-        }
-        since_ms = messages::thread_cpu_ms();
-    };
-    const auto tree =
-        pipeline.octomap()->builder().grown([&](octomap::ScanId id, const ::octomap::OcTree& so_far) {
-            const auto keyframe =
-                utimes.find(id.keyframe);  // none: it went for another one, at about its time
-            fill_in(keyframe != utimes.end() ? keyframe->second : 0, so_far);
-        });
-    if (tree) fill_in(std::numeric_limits<std::int64_t>::max(), *tree);
-    return tree != nullptr;
-}
-
 }  // namespace
 
-void Growth::watch(pipeline::Pipeline& pipeline) {
-    const auto frames = static_cast<std::int64_t>(pipeline.estimates().size());
+Growth::Growth(pipeline::Pipeline& pipeline) : pipeline_(pipeline) {
+    listen();
+}
+
+/// To the builder that the shell has now: it takes another one for another component.
+void Growth::listen() {
+    if (pipeline_.octomap() == nullptr) return;
+    pipeline_.octomap()->builder().listen(
+        [this](octomap::ScanId id, const ::octomap::OcTree& tree, bool is_in) { hear(id, tree, is_in); });
+}
+
+void Growth::hear(octomap::ScanId id, const ::octomap::OcTree& tree, bool is_in) {
+    if (!is_in) {
+        if (last_scan_ && id <= *last_scan_) {
+            scans_ = evaluation::Spread<Scan>(kMost);
+            spent_ms_ = 0;
+        }
+        last_scan_ = id;
+        since_ms_ = messages::thread_cpu_ms();
+        return;
+    }
+    spent_ms_ += messages::thread_cpu_ms() - since_ms_;
+    if (scans_.wants_next()) scans_.add({id.keyframe, octomap::sizes_of(tree), spent_ms_});
+}
+
+void Growth::watch() {
+    const auto frames = static_cast<std::int64_t>(pipeline_.estimates().size());
     if (frames == (last_ ? last_->frames : 0)) return;
-    last_ = moment_of(pipeline);
+    listen();
+    last_ = moment_of(pipeline_);
     if (!samples_.wants_next()) return;
     Moment moment = *last_;
-    take_sizes(pipeline, moment);
+    take_sizes(pipeline_, moment);
     samples_.add(moment);
 }
 
-void Growth::finish(pipeline::Pipeline& pipeline) {
-    if (pipeline.estimates().empty()) return;
+void Growth::finish() {
+    if (pipeline_.estimates().empty()) return;
     moments_ = samples_.kept();
-    Moment end = moment_of(pipeline);
+    Moment end = moment_of(pipeline_);
     if (last_) {
         end.segmentation_ms = last_->segmentation_ms;
         end.map_ms = last_->map_ms;
     }
-    take_sizes(pipeline, end);
+    take_sizes(pipeline_, end);
     if (!moments_.empty() && moments_.back().frames == end.frames) moments_.pop_back();
     moments_.push_back(end);
-    has_octomap_ = take_octomap(pipeline, moments_);
+    has_octomap_ = pipeline_.octomap() != nullptr && pipeline_.octomap()->builder().is_growth_heard();
+    if (has_octomap_) fill_in_octomap();
+}
+
+/// Each moment has the scans of the keyframes until then; the last one all.
+void Growth::fill_in_octomap() {
+    std::map<int, std::int64_t> utimes;
+    for (const KeyframePose& keyframe : pipeline_.keyframes().keyframes) utimes[keyframe.id] = keyframe.utime;
+    const auto is_later = [&](const Scan& scan, const Moment& moment) {
+        const auto keyframe = utimes.find(scan.keyframe);  // none: it went for another one, at about its time
+        return keyframe != utimes.end() && keyframe->second > moment.utime;
+    };
+    const auto set = [](Moment& moment, const octomap::OctomapSizes& sizes, double ms) {
+        moment.octomap_nodes = sizes.bt_nodes;
+        moment.octomap_bytes = sizes.bt_bytes;
+        moment.octomap_occupied_bytes = sizes.bt_occupied_bytes;
+        moment.octomap_ms = ms;
+    };
+    Scan now;
+    auto next = scans_.kept().begin();
+    for (Moment& moment : moments_) {
+        for (; next != scans_.kept().end() && !is_later(*next, moment); ++next) now = *next;
+        set(moment, now.sizes, now.ms);
+    }
+    set(moments_.back(), pipeline_.octomap()->builder().sizes(), spent_ms_);
 }
 
 Json Growth::figures() const {

@@ -74,7 +74,7 @@ LeafAccuracy::LeafAccuracy(const ::octomap::OcTree* tree) : to_leaves_(std::size
 }
 
 void LeafAccuracy::add(const evaluation::JudgedReading& reading) {
-    if (reading.face == nullptr) return;
+    if (!reading.is_near) return;
     const Eigen::Vector3d& normal = reading.face->plane.normal;
     to_planes_.add(reading.distance_m);
     for (std::size_t i = 0; i < to_leaves_.size(); ++i) {
@@ -139,12 +139,11 @@ Json LeafAccuracy::figures() const {
 std::string leaf_accuracy_markdown(const Json& report) {
     const Json accuracy = report.value("accuracy_beside_size", Json());
     if (!accuracy.is_object() || accuracy.at("readings").get<std::int64_t>() == 0) return "";
-    std::string out =
-        "\n## Accuracy beside size\n\nDistances of the " + accuracy.at("readings").dump() +
-        " depth readings near a plane's outline (within 5 cm, or max(1.5 cm, 3 sigma) where that is wider): "
-        "to that plane, and along its normal to the centre of the leaf of a voxel map that keeps every "
-        "reading:\n\n"
-        "| map | RMS cm | median cm |\n| --- | ---: | ---: |\n";
+    std::string out = "\n## Accuracy beside size\n\nDistances of the " + accuracy.at("readings").dump() +
+                      " depth readings within 5 cm of a plane's outline: to that plane, and along its normal "
+                      "to the centre of "
+                      "the leaf of a voxel map that keeps every reading:\n\n"
+                      "| map | RMS cm | median cm |\n| --- | ---: | ---: |\n";
     const auto row = [&](const std::string& map, const Json& figures) {
         out += "| " + map + " | " + centimetres(figures.at("rms_m")) + " | " +
                centimetres(figures.at("median_m")) + " |\n";

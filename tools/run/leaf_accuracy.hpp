@@ -42,7 +42,7 @@ struct LeafRow {
 std::optional<double> equal_resolution(const std::vector<LeafRow>& rows, double LeafRow::*figure,
                                        double value);
 
-/// Compares, over the readings within 5 cm of a plane's outline (or within the band, where that is wider):
+/// Compares, over the readings within 5 cm of a plane's outline:
 /// - their distance to that plane,
 /// - along the same normal, their distance to the centre of the leaf that holds them, for leaves of
 ///   kResolutions_m: of the readings voxelised, so of a voxel map that keeps every one of them, on OctoMap's

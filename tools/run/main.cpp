@@ -79,7 +79,7 @@ std::string map(const RunOptions& options, Input& input, pipeline::Pipeline& pip
     try {
         while (!messages::stop_requested() && input.feed()) {
             pipeline.settle();
-            growth.watch(pipeline);
+            growth.watch();
             progress.show(input, pipeline);
             interim.write_if_due(pipeline);
         }
@@ -174,10 +174,10 @@ int run(RunOptions options, const nlohmann::ordered_json& about) {
     warn(folder.take_notes());
 
     RunClock clock;
-    Growth growth;
+    Growth growth(pipeline);
     const std::string error = map(options, *input, pipeline, folder, growth);
     clock.stop();
-    growth.finish(pipeline);
+    growth.finish();
     if (const pipeline::GivenPoses* given = pipeline.given_poses();
         given != nullptr && given->missing() > 0 && !given->fit_nothing()) {
         spdlog::warn("{}: no pose within 0.1 s of {} keyframes, which are not in the map",
