@@ -158,7 +158,9 @@ std::string measures_text(const PlaneMap& map, const std::vector<Measure>& measu
             left("", 17) + left("plane a", 15) + left("plane b", 15) + left("angle deg", 19) + "distance m\n";
     for (const Measure& measure : measures) text += measure_text(map, measure);
     if (measures.empty())
-        text += "nothing of its rooms can be measured: no floor, ceiling or walls lie opposite\n";
+        text +=
+            "nothing of its rooms can be measured: no floor, ceiling or walls lie opposite; ids, or --all, "
+            "give pairs\n";
     return text + "\nThe " + kCertainty + " Distances are of planes within " +
            fixed(degrees(kParallel_rad), 0) + " deg of parallel.\n";
 }
