@@ -94,7 +94,7 @@ class View {
     const below = (i) => isBelowCeiling(model, i)
     this.photo = cloud(model, below, photo, 2)
     this.byPlane = cloud(model, (i) => planes[i] !== -1 && below(i), ofPlane, 2)
-    this.missed = cloud(model, (i) => planes[i] === -1, (c) => c.set('#e0452a'), 2.2)
+    this.missed = cloud(model, (i) => planes[i] === -1, (c) => c.set('#e0452a'), this.box.clientWidth < 600 ? 1.4 : 2.2)
     this.scene.add(this.photo, this.byPlane, this.missed)
   }
 
@@ -120,7 +120,7 @@ class View {
     const { low, high } = this.model.bounds, size = Math.max(...high.map((v, k) => v - low[k]), 0.5)
     const middle = low.map((v, k) => (v + high[k]) / 2)
     this.controls.target.set(...middle)
-    this.camera.position.set(middle[0] - 0.55 * size, middle[1] - 1.05 * size, middle[2] + 0.95 * size)
+    this.camera.position.set(middle[0] - 0.5 * size, middle[1] - 0.95 * size, middle[2] + 0.85 * size)
     this.camera.near = size / 500
     this.camera.far = size * 20
     this.camera.updateProjectionMatrix()
@@ -152,7 +152,7 @@ class View {
     if (width < 1 || height < 1) return
     this.renderer.setSize(width, height, false)
     this.camera.aspect = width / height
-    this.camera.fov = Math.min(80, 42 * Math.max(1, 1.25 / this.camera.aspect))
+    this.camera.fov = Math.min(80, 42 * Math.max(1, 0.95 / this.camera.aspect))
     this.camera.updateProjectionMatrix()
     this.draw()
   }
