@@ -36,7 +36,7 @@ std::optional<std::uint64_t> cube_of(const Eigen::Vector3d& p_world, double voxe
 
 std::optional<Pose> pose_of(const messages::Frame& frame, const Trajectory& trajectory) {
     if (frame.color_utime() != 0) {
-        if (const auto exact = pose_at(trajectory, frame.color_utime(), 0)) return exact;
+        if (auto exact = pose_at(trajectory, frame.color_utime(), 0)) return exact;
     }
     return pose_at(trajectory, frame.utime(), kMostGap_us);
 }
