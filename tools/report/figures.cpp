@@ -42,13 +42,6 @@ const std::vector<Figure>& fixed_figures() {
     return figures;
 }
 
-std::string bytes_text(double bytes) {
-    if (bytes < 1e3) return format("%.0f B", bytes);
-    if (bytes < 1e6) return format("%.2f kB", bytes / 1e3);
-    if (bytes < 1e9) return format("%.2f MB", bytes / 1e6);
-    return format("%.2f GB", bytes / 1e9);
-}
-
 }  // namespace
 
 std::vector<Figure> figures_of(const Json& report) {
@@ -75,7 +68,7 @@ std::string figure_text(const std::optional<double>& value, Kind kind) {
     if (!value) return "-";
     switch (kind) {
         case Kind::kBytes:
-            return bytes_text(*value);
+            return bytes_text(*value, 2);
         case Kind::kTimes:
             return format("%.2f", *value);
         case Kind::kShare:

@@ -160,10 +160,11 @@ std::string notes(const Json& report) {
 
 }  // namespace
 
-std::string bytes_text(double bytes) {
+std::string bytes_text(double bytes, int decimals) {
     if (bytes < 1e3) return format("%.0f B", bytes);
-    if (bytes < 1e6) return format("%.1f kB", bytes / 1e3);
-    if (bytes < 1e9) return format("%.1f MB", bytes / 1e6);
+    const std::string number = "%." + std::to_string(decimals) + "f ";
+    if (bytes < 1e6) return format((number + "kB").c_str(), bytes / 1e3);
+    if (bytes < 1e9) return format((number + "MB").c_str(), bytes / 1e6);
     return format("%.2f GB", bytes / 1e9);
 }
 
