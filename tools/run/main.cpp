@@ -31,6 +31,16 @@ struct RunOptions {
     pipeline::PipelineOptions pipeline;
 };
 
+OptionList report_options(RunOptions& options) {
+    OptionList list("Report");
+    list.add("size_resolutions", options.size_resolutions, {},
+             "Resolutions, metres with commas between, that the report tells the OctoMap's sizes at besides "
+             "its own; each takes a "
+             "pass over the keyframes' depth: 0.1 is quick, 0.02 and 0.01 take longer than the run's OctoMap",
+             Audience::kExpert);
+    return list;
+}
+
 void add_run_flags(messages::Flags& flags, RunOptions& options) {
     flags.add_positional("input", options.input, std::string("LCM log, ") + sensor::kInputs);
     flags.add("o,output", options.output, "Folder for the results; made if it is not there");
@@ -53,13 +63,9 @@ void add_run_flags(messages::Flags& flags, RunOptions& options) {
               "of this run: with --poses theirs, else the first camera's");
     flags.add("seed", options.seed, "Of everything random; the same seed gives the same bytes out");
     flags.add("no-octomap", options.no_octomap, "Do not build the OctoMap to compare with");
-    flags.add("size-resolutions", options.size_resolutions,
-              "Resolutions, metres with commas between, that the report tells the OctoMap's sizes at besides "
-              "its own; each "
-              "takes a pass over the keyframes' depth: 0.1 is quick, 0.02 and 0.01 take longer than the "
-              "run's OctoMap");
     flags.add("q,quiet", options.quiet, "No progress lines");
     flags.add("v,verbose", options.verbose, "Log more");
+    flags.add(report_options(options));
     flags.add(camera::options_of(options.source.device.options), "camera-");
     flags.add(options_of(options.pipeline.segmentation), "segmentation-");
     flags.add(options_of(options.pipeline.odometry), "odometry-");
