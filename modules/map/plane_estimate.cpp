@@ -98,6 +98,16 @@ PlaneEstimate::PlaneEstimate(const MapPlane& map_plane, double cell_m)
     refit();
 }
 
+PlaneEstimate PlaneEstimate::emptied() const {
+    PlaneEstimate left;
+    left.id = id;
+    left.plane = plane;
+    left.world_from_extent = world_from_extent;
+    left.long_axis_ = long_axis_;
+    left.fitted_weight = std::numeric_limits<double>::infinity();
+    return left;
+}
+
 void PlaneEstimate::add(const PlacedRegion& region, const FlatPolygon& outline_extent,
                         const Reliability& reliability) {
     moments += region.moments;

@@ -64,6 +64,9 @@ struct PlaneEstimate {
     /// as count.
     PlaneEstimate(const MapPlane& plane, double cell_m);
 
+    /// The same plane without points, extent or shape: it stays where it is until the next refit().
+    PlaneEstimate emptied() const;
+
     /// Takes a region in. The plane follows at the next refit(), the box at once.
     void add(const PlacedRegion& region, const FlatPolygon& outline_extent, const Reliability& reliability);
     /// Takes another estimate in; its evidence is resampled.

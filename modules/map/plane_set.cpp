@@ -44,7 +44,7 @@ std::optional<RegionRelation> PlaneSet::relation(const PlaneEstimate& a, const P
     return same_plane(a.plane, a.box, b.plane, b.box, rules_);
 }
 
-std::size_t PlaneSet::partner_of(const PlacedRegion& region) const {
+std::size_t PlaneSet::partner_of(const PlacedRegion& region, const Asked& is_asked) const {
     const Eigen::Matrix3d& axes = region.box.frame_from_box.linear();
     const Eigen::Vector3d reach = axes.col(0).cwiseAbs() * region.box.half_extents.x() +
                                   axes.col(1).cwiseAbs() * region.box.half_extents.y();
@@ -53,7 +53,7 @@ std::size_t PlaneSet::partner_of(const PlacedRegion& region) const {
     std::size_t best = none();
     double best_score = 0;
     for (std::size_t i = 0; i < bounds_.size(); ++i) {
-        if (!may_touch(bounds, bounds_[i], cosine_)) continue;
+        if (!may_touch(bounds, bounds_[i], cosine_) || (is_asked && !is_asked(i))) continue;
         const PlaneEstimate& estimate = estimates_[i];
         const double length = (center - estimate.box.frame_from_box.translation()).norm() +
                               region.box.half_extents.norm() + estimate.box.half_extents.norm();
@@ -116,14 +116,27 @@ std::vector<std::size_t> PlaneSet::merge(const std::vector<std::size_t>& grown, 
         ask(a);
     }
 
-    // Close the gaps.
-    std::vector<std::size_t> now(estimates_.size());
+    std::vector<char> is_kept(estimates_.size());
+    for (std::size_t i = 0; i < is_kept.size(); ++i) is_kept[i] = merged.stands(i);
+    std::vector<std::size_t> now = keep(is_kept);
+    for (std::size_t i = 0; i < now.size(); ++i)
+        if (!merged.stands(i)) now[i] = now[merged.find(i)];
+    return now;
+}
+
+std::vector<std::size_t> PlaneSet::drop_empty() {
+    std::vector<char> is_kept(estimates_.size());
+    std::transform(estimates_.begin(), estimates_.end(), is_kept.begin(),
+                   [](const PlaneEstimate& plane) { return plane.moments.count > 0; });
+    return keep(is_kept);
+}
+
+/// Closes the gaps that the others leave; returns for each where it is now, or none().
+std::vector<std::size_t> PlaneSet::keep(const std::vector<char>& is_kept) {
+    std::vector<std::size_t> now(estimates_.size(), none());
     std::size_t kept = 0;
     for (std::size_t i = 0; i < estimates_.size(); ++i) {
-        if (!merged.stands(i)) {
-            now[i] = now[merged.find(i)];  // of two, the one with the smaller index stays
-            continue;
-        }
+        if (is_kept[i] == 0) continue;
         now[i] = kept;
         if (kept != i) {
             estimates_[kept] = std::move(estimates_[i]);

@@ -15,8 +15,10 @@ class PlaneSet {
   public:
     PlaneSet(const MergeRules& rules, double max_extent_m);
 
-    /// The plane that a region fits best among those that satisfy the rules, or none().
-    std::size_t partner_of(const PlacedRegion& region) const;
+    /// Which planes are asked, by their index.
+    using Asked = std::function<bool(std::size_t)>;
+    /// The plane that a region fits best among those that satisfy the rules, and that are asked, or none().
+    std::size_t partner_of(const PlacedRegion& region, const Asked& is_asked = nullptr) const;
     static constexpr std::size_t none() { return static_cast<std::size_t>(-1); }
 
     std::size_t push_back(PlaneEstimate estimate);
@@ -28,6 +30,9 @@ class PlaneSet {
     /// those with one of `grown` can. Returns for each plane where it is now; the older id stays.
     std::vector<std::size_t> merge(const std::vector<std::size_t>& grown);
 
+    /// Lets planes without points go. Returns for each plane where it is now, or none().
+    std::vector<std::size_t> drop_empty();
+
     /// How well two planes fit, the smaller the better, or nothing if they are not one.
     using Score = std::function<std::optional<double>(std::size_t a, std::size_t b)>;
     /// Told that one plane is part of another one now.
@@ -36,6 +41,7 @@ class PlaneSet {
     std::vector<std::size_t> merge(const std::vector<std::size_t>& grown, double angle_rad,
                                    const Score& score, const Joined& joined);
 
+    const MergeRules& rules() const { return rules_; }
     std::vector<PlaneEstimate>& estimates() { return estimates_; }
     const std::vector<PlaneEstimate>& estimates() const { return estimates_; }
 
@@ -47,6 +53,7 @@ class PlaneSet {
     };
     static Bounds bounds_of(const PlaneEstimate& estimate);
     bool may_touch(const Bounds& a, const Bounds& b, double cosine) const;
+    std::vector<std::size_t> keep(const std::vector<char>& is_kept);
     std::optional<RegionRelation> relation(const PlaneEstimate& a, const PlaneEstimate& b) const;
 
     MergeRules rules_;

@@ -8,6 +8,8 @@
 #include <tuple>
 #include <utility>
 
+#include "map/belonging.hpp"
+
 namespace planemap::map {
 
 Rebuild::Rebuild(KeyframeStore& store, FoldedPlanes& folded, PlaneIds& ids, const ObservationModel& model)
@@ -57,8 +59,14 @@ void Rebuild::join(PlaneSet& planes, RegionJoiner& joiner, const std::optional<S
     for (SeenRegion& entry : entries_)
         if (entry.plane != PlaneSet::none()) entry.plane = now[entry.plane];
     if (surfaces) {
-        const std::vector<std::size_t> united = unite_surfaces(planes, entries_, *surfaces);
-        for (std::size_t& plane : now) plane = united[plane];
+        const auto follow = [&](const std::vector<std::size_t>& to) {
+            for (std::size_t& plane : now)
+                if (plane != PlaneSet::none()) plane = to[plane];
+        };
+        follow(unite_surfaces(planes, entries_, *surfaces));
+        std::size_t fixed = 0;  // folded planes, which are the first ones
+        for (std::size_t i = 0; i < folded_.planes().size(); ++i) fixed = std::max(fixed, now[i] + 1);
+        follow(reassign_strays(planes, entries_, order_, fixed, joiner, *surfaces));
     }
     rename_folded(planes, now);
 }

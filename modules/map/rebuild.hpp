@@ -25,7 +25,8 @@ class Rebuild {
     Rebuild(KeyframeStore& store, FoldedPlanes& folded, PlaneIds& ids, const ObservationModel& model);
 
     /// Regions join the folded planes and make new ones, the weightiest first; then these are merged, and
-    /// with rules of surfaces, what says one surface twice is united. `planes` is empty before.
+    /// with rules of surfaces, what says one surface twice is united, and regions are asked again whether
+    /// they belong (reassign_strays()). `planes` is empty before.
     void join(PlaneSet& planes, RegionJoiner& joiner, const std::optional<SurfaceRules>& surfaces);
     /// The shapes: what all keyframes and looks see, and see past, in order of time.
     void draw(PlaneSet& planes, const RegionJoiner& joiner, const FreeSpace& free_space, int threads) const;

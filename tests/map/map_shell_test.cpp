@@ -56,6 +56,9 @@ TEST_F(MapShellTest, PublishesTheMapAmongCorruptMessagesAndWritesItAsALog) {
     ASSERT_TRUE(log.next(event));
     EXPECT_EQ(event.channel, messages::channels::kMap);
     EXPECT_EQ(messages::from_message(messages::decode<plane_map_t>(event.bytes)).planes.size(), 2u);
+    ASSERT_TRUE(log.next(event));
+    EXPECT_EQ(event.channel, messages::channels::kSeenSpace);
+    EXPECT_GT(messages::from_message(messages::decode<seen_space_t>(event.bytes)).volume(), 0);
     EXPECT_FALSE(log.next(event));
 }
 
