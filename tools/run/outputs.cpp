@@ -14,6 +14,7 @@
 #include "evaluate/point_sample.hpp"
 #include "evaluate/soundness_report.hpp"
 #include "map/map_file.hpp"
+#include "messages/convert.hpp"
 #include "pipeline/pipeline.hpp"
 #include "run/accuracy.hpp"
 #include "run/depth_watch.hpp"
@@ -169,16 +170,17 @@ Json components_of(pipeline::Pipeline& pipeline) {
     return components;
 }
 
-/// Holds the map against the depth of the run: figures into the report; the readings' sample.
+/// Holds the map, as the message gives it whose size is told, against the depth of the run: figures into the
+/// report; the readings' sample.
 std::vector<CloudPoint> judge(pipeline::Pipeline& pipeline, const DepthWatch& depth, Json& report) {
     const std::vector<evaluation::PosedView> views = depth.posed(pipeline.trajectory());
+    const PlaneMap sent = messages::from_message(messages::to_message(pipeline.map().mapper().map(), 0));
     evaluation::PointSample sample(views);
     LeafAccuracy accuracy(pipeline.octomap() != nullptr ? &pipeline.octomap()->builder().tree() : nullptr);
-    const evaluation::Soundness soundness =
-        evaluation::soundness(pipeline.map().mapper().map(), views, {}, [&](const auto& reading) {
-            sample.add(reading);
-            accuracy.add(reading);
-        });
+    const evaluation::Soundness soundness = evaluation::soundness(sent, views, {}, [&](const auto& reading) {
+        sample.add(reading);
+        accuracy.add(reading);
+    });
     report.update(evaluation::soundness_figures(soundness));
     report["coverage"].update(evaluation::coverage_figures(soundness));
     report["accuracy_beside_size"] = accuracy.figures();
