@@ -6,6 +6,7 @@
 #include <map>
 
 #include "core/geometry/pose.hpp"
+#include "core/heap_bytes.hpp"
 #include "map/stored_keyframe.hpp"
 
 namespace planemap::map {
@@ -28,6 +29,9 @@ class Heirs {
 
     /// Takes all that others are known to have. Precondition: no id is in both.
     void absorb(Heirs&& other);
+
+    /// On the heap.
+    std::size_t memory_bytes() const { return node_bytes(heirs_); }
 
   private:
     struct Heir {

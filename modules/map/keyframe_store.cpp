@@ -224,12 +224,7 @@ std::map<int, std::vector<int>> KeyframeStore::sightings() const {
 }
 
 std::size_t KeyframeStore::memory_bytes() const {
-    constexpr std::size_t kNode = 4 * sizeof(void*);  // of a std::map: colour, parent, two children
-    const auto nodes = [](const auto& map) {
-        using Value = typename std::decay_t<decltype(map)>::value_type;
-        return map.size() * heap_bytes(kNode + sizeof(Value));
-    };
-    std::size_t bytes = nodes(poses_) + nodes(keyframes_) + nodes(redirections_) +
+    std::size_t bytes = node_bytes(poses_) + node_bytes(keyframes_) + heirs_.memory_bytes() +
                         heap_bytes(named_.capacity() * sizeof(KeyframePose));
     for (const auto& [id, keyframe] : keyframes_) bytes += map::memory_bytes(keyframe) - sizeof keyframe;
     return bytes;
