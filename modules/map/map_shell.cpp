@@ -2,16 +2,12 @@
 #include "map/map_shell.hpp"
 
 #include <spdlog/spdlog.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <map>
 #include <stdexcept>
-#include <system_error>
 
 #include "core/components.hpp"
-#include "map/earlier_map.hpp"
 #include "map/map_file.hpp"
 #include "messages/channels.hpp"
 #include "messages/convert.hpp"
@@ -20,35 +16,19 @@
 namespace planemap::map {
 
 namespace {
-constexpr std::int64_t kWritePeriodUs = 5000000;
-constexpr std::int64_t kTimesTheCost = 50;        ///< of a write, until the next one
-constexpr std::int64_t kSavePeriodUs = 1000000;   ///< of poses and plane ids to the journal
-constexpr std::int64_t kRetryPeriodUs = 1000000;  ///< after a write that failed
+constexpr std::int64_t kSavePeriodUs = 1000000;  ///< of poses and plane ids to the journal
 /// In the journal, of each keyframe: as many as the map keeps.
 constexpr auto kLooksKept = static_cast<int>(StoredKeyframe::kMostLater);
-constexpr const char* kFile = "plane_map.lcmlog";
 constexpr const char* kEarlierIds = "PLANEMAP_REGION_PLANES";  ///< in journals before PLANEMAP_SURFACES
 
-/// Whether an error says that a disk has no room or fails, which may pass, and not that a path is wrong.
-bool is_disk_trouble(const std::error_code& error) {
-    for (const int trouble : {ENOSPC, EDQUOT, EFBIG, EIO, ESTALE, ENOMEM})
-        if (error.value() == trouble) return true;
-    return false;
-}
-
-void make_folder(const std::filesystem::path& folder) {
-    std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    if (error) throw std::system_error(error, folder.string() + ": cannot be made");
-}
 }  // namespace
 
 MapShell::MapShell(messages::Bus& bus, const MapShellOptions& options)
     : bus_(bus),
-      output_(options.output),
       needs_planes_(options.needs_planes),
       tells_surfaces_(options.map.unites_surfaces()),
       maps_(options.map),
+      output_(options.output),
       watch_(status_, options.start.empty()
                           ? "the map is incomplete"
                           : "what they saw is in the map only as far as the map to start from held it") {
@@ -61,7 +41,8 @@ MapShell::MapShell(messages::Bus& bus, const MapShellOptions& options)
         journal_ = std::make_unique<messages::Journal>(options.journal);
         resume();
     }
-    if (!output_.empty()) try_output();
+    output_.open(maps_);
+    if (!output_.error().empty()) tell();
     bus_.subscribe(messages::channels::kKeyframe,
                    status_.guard([this](const messages::RawMessage& m) { on_keyframe(m); }), 256);
     bus_.subscribe(messages::channels::kLook,
@@ -173,7 +154,7 @@ void MapShell::resume() {
     maps_.update(poses);
     maps_.restore_ids(surfaces);
     watch_.named(poses, messages::now_us());
-    is_ours_ = true;  // what lies in the output folder is this map, as it was
+    output_.claim();
     tell_losses();
     spdlog::info("map: goes on with {} planes of {} keyframes of {}", mapper().map().planes.size(),
                  maps_.keyframes(), file);
@@ -251,7 +232,7 @@ void MapShell::publish() {
     } else {
         status_.published();
     }
-    unwritten_ = true;
+    output_.change();
     tell();
 }
 
@@ -283,7 +264,7 @@ void MapShell::tell() {
     if (mapper().left_out_corners()) text += ", too many meet to find all corners";
     if (const std::size_t waiting = maps_.waiting(); waiting > 0)
         text += ", " + std::to_string(waiting) + " keyframes wait for a pose";
-    if (!write_error_.empty()) text += "; not written, trying every second: " + write_error_;
+    if (!output_.error().empty()) text += "; not written, trying every second: " + output_.error();
     if (is_up_missing()) text += "; up is not known";
     status_.set_text(text);
 }
@@ -296,9 +277,7 @@ int MapShell::poll() {
         publish_maps(seq_ - 1);
         published_us_ = messages::now_us();
     }
-    const std::int64_t period =
-        write_error_.empty() ? std::max(kWritePeriodUs, kTimesTheCost * write_cost_us_) : kRetryPeriodUs;
-    if (unwritten_ && !output_.empty() && messages::now_us() - last_write_us_ >= period) try_write();
+    if (output_.poll(maps_)) tell();
     return 100;
 }
 
@@ -313,86 +292,13 @@ void MapShell::finish() {
     if (is_up_missing())
         status_.remark("up", "up is not known, so no plane has a label: " + mapper().why_up());
     if (journal_) save_poses_and_ids();
-    if (!output_.empty() && unwritten_) try_write();
-    if (!output_.empty() && !is_ours_ && write_error_.empty())
-        spdlog::info("{}: no planes came, so the earlier map stays", (output_ / kFile).string());
-    if (!write_error_.empty()) throw std::runtime_error("the map could not be written: " + write_error_);
+    if (output_.finish(maps_)) tell();
+    if (output_.leaves_earlier())
+        spdlog::info("{}: no planes came, so the earlier map stays", output_.file().string());
+    if (!output_.error().empty())
+        throw std::runtime_error("the map could not be written: " + output_.error());
     if (needs_planes_ && mapper().map().planes.empty())
         throw std::runtime_error("nothing was mapped: no planes came");
-}
-
-/// A folder that cannot be one shows now, not after the run; a disk that is full now may have room later.
-void MapShell::try_output() {
-    const std::filesystem::path file = output_ / kFile;
-    std::error_code ignored;
-    if (std::filesystem::is_directory(file, ignored))
-        throw std::runtime_error(file.string() + ": is a folder, where the map is to go");
-    try {
-        make_folder(output_);
-        if (!std::filesystem::exists(file)) write();
-    } catch (const std::system_error& error) {
-        if (!is_disk_trouble(error.code())) throw;
-        unwritten_ = true;
-        write_failed(error.what());
-        return;
-    }
-    if (::access(output_.c_str(), W_OK) != 0)
-        throw std::runtime_error(output_.string() + ": is no folder that can be written to");
-}
-
-/// A disk that is full or gone ends nothing: the map is kept, said not to be written, and tried again.
-void MapShell::try_write() {
-    const bool failed_before = !write_error_.empty();
-    try {
-        write();
-        write_error_.clear();
-        if (failed_before) spdlog::info("{} is written again", (output_ / kFile).string());
-    } catch (const std::exception& error) {
-        write_failed(error.what());
-    }
-    tell();
-}
-
-void MapShell::write_failed(const std::string& why) {
-    if (write_error_.empty()) spdlog::warn("{}; the map is kept, trying every second", why);
-    write_error_ = why;
-    last_write_us_ = messages::now_us();
-    tell();
-}
-
-void MapShell::write() {
-    const std::int64_t start = messages::now_us();
-    make_folder(output_);  // somebody may have removed it
-    if (make_way()) write_maps();
-    last_write_us_ = messages::now_us();
-    write_cost_us_ = last_write_us_ - start;
-    unwritten_ = false;
-}
-
-/// The largest under its name, others beside it; of these what an earlier process left goes.
-void MapShell::write_maps() {
-    const std::vector<const PlaneMapper*> maps = maps_.all();
-    for (std::size_t number = 1; number <= kMostComponentFiles; ++number) {
-        const std::filesystem::path file = output_ / component_file(kFile, number);
-        std::error_code ignored;
-        if (number <= maps.size())
-            write_plane_map(file, maps[number - 1]->map(), maps[number - 1]->seen_space());
-        else
-            std::filesystem::remove(file, ignored);
-    }
-}
-
-/// Keeps what an earlier process left, under another name. False while there is nothing to write that is
-/// worth as much.
-bool MapShell::make_way() {
-    const std::filesystem::path file = output_ / kFile;
-    if (is_ours_ || !may_hold_planes(file)) return is_ours_ = true;
-    if (mapper().map().planes.empty()) return false;
-    const KeptMap kept = keep_earlier_map(file);
-    spdlog::info("the earlier map is kept as {}", kept.file.string());
-    for (const std::filesystem::path& removed : kept.removed)
-        spdlog::info("{}: removed, the newest of its kind are kept", removed.string());
-    return is_ours_ = true;
 }
 
 }  // namespace planemap::map

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "map/component_maps.hpp"
+#include "map/map_output.hpp"
 #include "messages/channels.hpp"
 #include "messages/journal.hpp"
 #include "messages/keyframe_watch.hpp"
@@ -19,12 +20,8 @@ struct MapShellOptions {
     MapOptions map;
     std::filesystem::path
         start;  ///< plane_map.lcmlog to start from, see PlaneMapper::start_from(); empty: none
-    /// Folder that plane_map.lcmlog, and plane_map_2.lcmlog ... of further components, is written to (beside
-    /// and renamed), every few seconds and at the end; empty: none. A map of an earlier process stays until
-    /// there are planes to write, and is then kept under another name (keep_earlier_map()). The folder is
-    /// tried at the start: a path that cannot be one is an error. A disk that is full is not, nor a write
-    /// that fails later: it is said in the status and tried again every second, at the end finish() throws if
-    /// the last one failed.
+    /// Folder that the maps are written to (MapOutput), every few seconds and at the end; empty: none. What
+    /// keeps them from the disk is said in the status; finish() throws if the last attempt failed.
     std::filesystem::path output;
     /// Keyframes, poses and plane ids are kept in this file: a process that is started again goes on with
     /// them, in the same world frame; empty: in none.
@@ -68,18 +65,12 @@ class MapShell : public messages::Shell {
     void publish_surfaces();
     void tell();
     bool is_up_missing() const;
-    void try_output();
-    void try_write();
-    void write();
-    void write_maps();
-    bool make_way();
-    void write_failed(const std::string& why);
 
     messages::Bus& bus_;
-    std::filesystem::path output_;
     bool needs_planes_;
     bool tells_surfaces_;
     ComponentMaps maps_;
+    MapOutput output_;
     messages::ModuleStatus status_{"map"};
     messages::StreamGuard keyframe_guard_{messages::channels::kKeyframe, "keyframes", status_};
     messages::StreamGuard trajectory_guard_{messages::channels::kTrajectory, "trajectories", status_, false};
@@ -93,10 +84,6 @@ class MapShell : public messages::Shell {
     std::int32_t seq_ = 0, surfaces_seq_ = 0;
     std::size_t told_rebuilds_ = 0;  ///< when the surfaces were last told
     std::int64_t published_us_ = 0;  ///< wall clock of the last map; 0: none yet
-    std::int64_t last_write_us_ = 0, write_cost_us_ = 0;
-    std::string write_error_;  ///< of the last attempt; empty if it went well
-    bool unwritten_ = false;
-    bool is_ours_ = false;  ///< the file is this process's, or what was there is kept
 };
 
 }  // namespace planemap::map
