@@ -22,7 +22,7 @@ namespace planemap {
 namespace {
 
 struct RunOptions {
-    std::string input, frames, size_resolutions = "0.1";
+    std::string input, frames, size_resolutions = "0.1,0.05,0.02";
     std::filesystem::path output, poses;
     messages::CameraFlag camera;
     sensor::SourceOptions source;
@@ -33,11 +33,12 @@ struct RunOptions {
 
 OptionList report_options(RunOptions& options) {
     OptionList list("Report");
-    list.add("size_resolutions", options.size_resolutions, {},
-             "Resolutions, metres with commas between, that the report tells the OctoMap's sizes at besides "
-             "its own; each takes a "
-             "pass over the keyframes' depth: 0.1 is quick, 0.02 and 0.01 take longer than the run's OctoMap",
-             Audience::kExpert);
+    list.add(
+        "size_resolutions", options.size_resolutions, {},
+        "Resolutions, metres with commas between, that the report tells the OctoMap's sizes at besides "
+        "its own; each takes a pass over the keyframes' depth, 0.01 a long one. One whose tree would take "
+        "more than 512 MB is left out, which the report says",
+        Audience::kExpert);
     return list;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "run/size_report.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <vector>
@@ -16,8 +18,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kBytesPerPoint = 12;  // three floats, as the paper counts
-constexpr int kZstdLevel = 3;          // zstd's own default; a higher one takes a minute for a large .bt
+constexpr double kBytesPerPoint = 12;     // three floats, as the paper counts
+constexpr double kMostTreeBytes = 512e6;  // of an OctoMap that is built to be measured
+constexpr int kZstdLevel = 3;             // zstd's own default; a higher one takes a minute for a large .bt
 
 std::int64_t points_bytes(double points) {
     return static_cast<std::int64_t>(kBytesPerPoint * points);
@@ -43,15 +46,22 @@ void add_tree(const ::octomap::OcTree& tree, const octomap::OctomapSizes& s, con
     report["coverage"]["leaves_explained_half"] = c.leaves_explained_half;
 }
 
-/// The rows of the OctoMap, and of what it would be at other resolutions.
+/// The rows of the OctoMap, and of what it would be at other resolutions; which of those a robot has no
+/// memory for.
 void add_octomap_rows(const octomap::OctomapBuilder& builder, const PlaneMap& map,
                       const std::vector<double>& resolutions_m, const octomap::VoxelSet& cloud_1cm,
-                      Json& rows) {
+                      Json& rows, Json& left_out) {
     const octomap::OctomapSizes sizes = builder.sizes();
     add_tree_rows(builder.tree(), TreeOrigin::kBuilt, map,
                   builder.working_bytes() - sizes.memory_bytes + sizes.allocated_bytes, rows);
     for (const double resolution_m : resolutions_m) {
-        if (resolution_m == builder.tree().getResolution()) continue;
+        const double finer = builder.tree().getResolution() / resolution_m;
+        if (finer == 1) continue;
+        // A tree's cells are of space, mostly of the free.
+        if (static_cast<double>(sizes.allocated_bytes) * std::pow(std::max(1.0, finer), 3) > kMostTreeBytes) {
+            left_out.push_back(resolution_m);
+            continue;
+        }
         const auto tree = builder.tree_at(resolution_m);
         if (tree != nullptr) add_tree_rows(*tree, TreeOrigin::kBuilt, map, std::nullopt, rows);
     }
@@ -68,7 +78,8 @@ void add_octomap(const octomap::OctomapBuilder& builder, const PlaneMap& map,
     sizes["octomap_working"] = builder.working_bytes();
     add_tree(builder.tree(), s, map, sizes, report);
     report["octomap"]["rebuilds"] = builder.rebuilds();
-    add_octomap_rows(builder, map, resolutions_m, cloud_1cm, report["sizes"]);
+    report["sizes_left_out"] = Json::array();
+    add_octomap_rows(builder, map, resolutions_m, cloud_1cm, report["sizes"], report["sizes_left_out"]);
 }
 
 std::string share_text(const Json& share) {

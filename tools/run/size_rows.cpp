@@ -275,6 +275,10 @@ std::string size_rows_markdown(const Json& report) {
                 bytes_text(row.at("bytes").get<double>()) + " | " +
                 (zstd.is_number() ? bytes_text(zstd.get<double>()) : "") + " |\n";
     }
+    if (const auto left_out = report.find("sizes_left_out"); left_out != report.end() && left_out->is_array())
+        for (const Json& resolution : *left_out)
+            text += "\nAt " + cm_text(resolution.get<double>()) +
+                    " the OctoMap would take more than 512 MB: it was not built.\n";
     return text +
            "\nMemory is what the allocator takes. A cloud's points are the centres of voxels that hold a "
            "reading of a "
