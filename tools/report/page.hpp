@@ -14,6 +14,8 @@
 namespace planemap {
 
 /// What the page shows. What is not known is null or empty; the page then says so.
+// nlohmann::json's moves are noexcept, though what they call in debug builds is not.
+// NOLINTNEXTLINE(bugprone-exception-escape)
 struct PageSource {
     nlohmann::ordered_json report;                  ///< report.json
     nlohmann::ordered_json planes;                  ///< planes.json

@@ -98,7 +98,8 @@ void LeafAccuracy::add_to_tree(const Eigen::Vector3d& p_world, const Eigen::Vect
     };
     if (is_in_range) look_at(own);  // no centre is nearer than that of the leaf that holds the point
     if (is_in_range && std::isinf(nearest))
-        for (int n = 0; n < 27; ++n) look_at(own + Eigen::Vector3d(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1));
+        for (int n = 0; n < 27; ++n)
+            look_at(own + Eigen::Vector3i(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1).cast<double>());
     if (std::isinf(nearest))
         ++tree_->without_leaf;
     else

@@ -51,6 +51,8 @@ struct RunWatch {
 };
 
 /// What became of a run's results.
+// As PageSource.
+// NOLINTNEXTLINE(bugprone-exception-escape)
 struct Outputs {
     nlohmann::ordered_json report;      ///< null if it could not be made
     std::vector<std::string> files;     ///< names of those that were made
