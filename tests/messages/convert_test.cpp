@@ -17,7 +17,6 @@ namespace planemap::messages {
 namespace {
 
 using test::sample_keyframe;
-using test::sample_region;
 
 void expect_same(const PlanarRegion& a, const PlanarRegion& b) {
     EXPECT_EQ(a.plane.normal, b.plane.normal);

@@ -259,7 +259,7 @@ TEST_F(ExportTest, ACloudLiesOnThePlanesThatExplainIt) {
         const Eigen::Vector3d p = level_from_world * cloud[i].getVector3fMap().cast<double>();
         EXPECT_LT((p - points[i].position.cast<double>()).norm(), 1e-4);
         EXPECT_EQ(static_cast<int>(cloud[i].label), points[i].plane);
-        EXPECT_EQ(Rgb(cloud[i].r, cloud[i].g, cloud[i].b), points[i].color);
+        EXPECT_EQ((Rgb{cloud[i].r, cloud[i].g, cloud[i].b}), points[i].color);
     }
 
     // The same bytes again; of each cube one point; no more than are allowed.

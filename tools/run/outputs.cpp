@@ -188,6 +188,8 @@ std::vector<CloudPoint> judge(pipeline::Pipeline& pipeline, const DepthWatch& de
 }
 
 /// What a report is of, and what came to light with it.
+// As PageSource.
+// NOLINTNEXTLINE(bugprone-exception-escape)
 struct Reported {
     Json report;
     std::vector<CloudPoint> points;
