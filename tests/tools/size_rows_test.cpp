@@ -240,12 +240,20 @@ TEST(Headline, IsTheMessageOverTheSmallestOccupiedFormAtEqualAccuracy) {
     EXPECT_THAT(headline.at("sentence").get<std::string>(), HasSubstr("was not measured"));
     EXPECT_THAT(headline.at("sentence").get<std::string>(), HasSubstr("84.9 %"));
 
-    report["accuracy_beside_size"] = {{"equal_resolution_m", {{"by_rms", 0.023}, {"by_median", nullptr}}}};
-    headline = headline_of(report);
-    EXPECT_EQ(headline.at("opponent").at("resolution_m"), 0.02);
+    // Never at a finer one than as accurate as the planes, which would be larger.
+    const auto headline_at = [&](double equal_m) {
+        report["accuracy_beside_size"] = {
+            {"equal_resolution_m", {{"by_rms", equal_m}, {"by_median", nullptr}}}};
+        return headline_of(report);
+    };
+    EXPECT_EQ(headline_at(0.02).at("opponent").at("resolution_m"), 0.02);
+    EXPECT_DOUBLE_EQ(headline_at(0.018).at("ratio"), 15);
+    EXPECT_EQ(headline_at(0.2).at("opponent").at("resolution_m"), 0.1) << "the coarsest that there is";
+    headline = headline_at(0.023);
+    EXPECT_EQ(headline.at("opponent").at("resolution_m"), 0.05);
     EXPECT_EQ(headline.at("resolution_m"), 0.023);
-    EXPECT_DOUBLE_EQ(headline.at("ratio"), 15);
-    EXPECT_THAT(headline.at("sentence").get<std::string>(), HasSubstr("2.3 cm"));
+    EXPECT_DOUBLE_EQ(headline.at("ratio"), 2.5);
+    EXPECT_THAT(headline.at("sentence").get<std::string>(), HasSubstr("2.3 cm (RMS)"));
     report["headline"] = headline;
     const std::string text = size_rows_markdown(report);
     EXPECT_THAT(text, HasSubstr(headline.at("sentence").get<std::string>()));

@@ -108,9 +108,10 @@ void require_ours(const ExportOptions& options, const std::vector<std::string>& 
     std::error_code ignored;
     for (const std::string& name : names) {
         if (fs::exists(options.output / name, ignored)) {
-            throw std::runtime_error(
-                (options.output / name).string() +
-                ": is there, and not of an earlier export: give another --output, or --replace");
+            throw std::runtime_error((options.output / name).string() +
+                                     ": is there, and no report.json beside it says that an export made it: "
+                                     "give another --output, "
+                                     "or --replace");
         }
     }
 }

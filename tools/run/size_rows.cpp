@@ -8,6 +8,7 @@
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -81,23 +82,21 @@ bool is_opponent(const Json& row) {
            row.at("zstd_bytes").is_number() && row.at("resolution_m").is_number();
 }
 
-/// How far apart two resolutions are, as a factor's logarithm.
-double apart(double a_m, double b_m) {
-    return std::abs(std::log(a_m / b_m));
-}
-
 const Json* planes_message(const Json& rows) {
     for (const Json& row : rows)
         if (row.at("map") == "planes" && row.at("form") == "message") return &row;
     return nullptr;
 }
 
-/// The smallest of the opponents whose resolution is the nearest.
+/// The smallest of the opponents at the finest resolution that is not finer than this one: a finer map would
+/// be more accurate than the planes, and larger. Where all are finer, at the coarsest.
 const Json* smallest_opponent(const Json& rows, double resolution_m) {
+    constexpr double kSame = 1e-6;  // of a resolution
     const Json* best = nullptr;
     const auto key = [&](const Json& row) {
-        return std::pair(apart(row.at("resolution_m").get<double>(), resolution_m),
-                         row.at("zstd_bytes").get<std::size_t>());
+        const double factor = row.at("resolution_m").get<double>() / resolution_m;
+        const bool is_finer = factor < 1 - kSame;
+        return std::tuple(is_finer, is_finer ? 1 / factor : factor, row.at("zstd_bytes").get<std::size_t>());
     };
     for (const Json& row : rows)
         if (is_opponent(row) && (best == nullptr || key(row) < key(*best))) best = &row;
@@ -117,7 +116,8 @@ std::string sentence_of(const Json& headline, bool is_equal) {
                        opponent.at("map").get<std::string>() + ", " + opponent.at("form").get<std::string>() +
                        ") " + bytes_text(opponent.at("zstd_bytes").get<double>()) + ": " +
                        format("%.2f", headline.at("ratio").get<double>()) + " times as much";
-    text += is_equal ? "; the accuracy is equal at " + cm_text(headline.at("resolution_m").get<double>())
+    text += is_equal ? "; the accuracy is equal at " + cm_text(headline.at("resolution_m").get<double>()) +
+                           " (RMS)"
                      : "; at which resolution the accuracy is equal was not measured";
     const Json& explained = headline.at("explained_points");
     return text + (explained.is_number()

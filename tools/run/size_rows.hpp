@@ -62,8 +62,8 @@ void add_tree_rows(const ::octomap::OcTree& tree, TreeOrigin origin, const Plane
 void add_cloud_rows(const octomap::VoxelSet& cloud_1cm, nlohmann::ordered_json& rows);
 
 /// "headline" of a report that has "sizes": the planes' message beside the smallest form of the occupied
-/// space alone, both compressed, at the resolution of equal accuracy (accuracy_beside_size), or else at the
-/// OctoMap's. Null without an OctoMap.
+/// space alone, both compressed, at the finest resolution that is not finer than that of equal accuracy by
+/// RMS (accuracy_beside_size), or else at the OctoMap's. Null without an OctoMap.
 nlohmann::ordered_json headline_of(const nlohmann::ordered_json& report);
 
 /// The headline and a table of the rows. Empty for a report without them.
