@@ -143,11 +143,10 @@ std::vector<Row> rows_of(const Json& report) {
 std::string like_with_like(const Json& sizes) {
     const struct {
         const char *octomap, *planes, *what;
-    } pairs[] = {{"octomap_bt", "plane_map_message", "as a file"},
-                 {"octomap_bt_zstd", "plane_map_zstd", "as a file compressed by zstd"},
-                 {"octomap_bt_occupied_zstd", "plane_map_zstd", "as such a file of the occupied space alone"},
-                 {"octomap_bt_memory", "plane_map_memory", "loaded in memory"},
-                 {"octomap_working", "plane_map_working", "to go on mapping"}};
+    } pairs[] = {
+        {"octomap_bt", "plane_map_message", "as a file"},
+        {"octomap_bt_zstd", "plane_map_zstd", "as a file compressed by zstd"},
+        {"octomap_bt_occupied_zstd", "plane_map_zstd", "as such a file of the occupied space alone"}};
     std::string text;
     for (const auto& pair : pairs) {
         const Json octomap = sizes.value(pair.octomap, Json()), planes = sizes.value(pair.planes, Json());
@@ -166,6 +165,9 @@ std::string notes(const Json& report) {
            "space "
            "alone leaves it out.\n"
            "- The message is the map to use, not what it takes to go on mapping.\n"
+           "- In memory OctoMap's rows here are its own count, about half of what the allocator takes: that "
+           "is "
+           "in the table of like with like.\n"
            "- The ratios are of this resolution; another gives others (--octomap-resolution-m).\n";
 }
 
