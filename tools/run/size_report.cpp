@@ -20,7 +20,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kBytesPerPoint = 12;     // three floats, as the paper counts
 constexpr double kMostTreeBytes = 512e6;  // of an OctoMap that is built to be measured
-constexpr int kZstdLevel = 3;             // zstd's own default; a higher one takes a minute for a large .bt
 
 std::int64_t points_bytes(double points) {
     return static_cast<std::int64_t>(kBytesPerPoint * points);
