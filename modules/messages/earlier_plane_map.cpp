@@ -71,12 +71,7 @@ MapPlane from_message(const earlier_map_plane_t& message) {
 }  // namespace
 
 PlaneMap from_message(const earlier_plane_map_t& message) {
-    PlaneMap map;
-    map.utime = checked_utime(message.utime, "plane_map.utime");
-    map.revision = message.revision;
-    require(message.component >= 0, "component", "is negative");
-    map.component = message.component;
-    map.up = checked_up(message.up);
+    PlaneMap map = map_without_planes(message);
     map.planes.reserve(message.planes.size());
     for (const earlier_map_plane_t& plane : message.planes) {
         require(map.planes.empty() || plane.id > map.planes.back().id, "plane.id", "does not ascend");

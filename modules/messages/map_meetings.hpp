@@ -3,10 +3,13 @@
 // and who hears it.
 #pragma once
 
+#include <cmath>
 #include <optional>
 
 #include "core/geometry/plane_intersection.hpp"
 #include "core/plane_map.hpp"
+#include "messages/checks.hpp"
+#include "messages/convert.hpp"
 
 namespace planemap::messages {
 
@@ -23,7 +26,18 @@ inline std::optional<Eigen::Vector3d> shared_point(const MapPlane& a, const MapP
     return common_point(a.plane(), b.plane(), c.plane(), kLeastVolume);
 }
 
-/// A message's up. Throws MessageError for what is neither zero nor a unit vector.
-Eigen::Vector3f checked_up(const float* up_world);
+/// What a map's message says of it beside its planes. Throws MessageError.
+template <typename Message>
+PlaneMap map_without_planes(const Message& message) {
+    PlaneMap map;
+    map.utime = checked_utime(message.utime, "plane_map.utime");
+    map.revision = message.revision;
+    require(message.component >= 0, "component", "is negative");
+    map.component = message.component;
+    map.up = Eigen::Vector3f(message.up);
+    require(map.up.allFinite() && (map.up.isZero() || std::abs(map.up.norm() - 1) < 1e-3f), "up",
+            "is neither zero nor a unit vector");
+    return map;
+}
 
 }  // namespace planemap::messages

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <cmath>
 
 #include "messages/checks.hpp"
 #include "messages/convert.hpp"
@@ -9,13 +8,6 @@
 #include "messages/packed_map.hpp"
 
 namespace planemap::messages {
-
-Eigen::Vector3f checked_up(const float* up_world) {
-    const Eigen::Vector3f up(up_world);
-    require(up.allFinite() && (up.isZero() || std::abs(up.norm() - 1) < 1e-3f), "up",
-            "is neither zero nor a unit vector");
-    return up;
-}
 
 plane_map_t to_message(const PlaneMap& map, std::int32_t seq, std::int64_t session) {
     plane_map_t message;
@@ -32,12 +24,7 @@ plane_map_t to_message(const PlaneMap& map, std::int32_t seq, std::int64_t sessi
 }
 
 PlaneMap from_message(const plane_map_t& message) {
-    PlaneMap map;
-    map.utime = checked_utime(message.utime, "plane_map.utime");
-    map.revision = message.revision;
-    require(message.component >= 0, "component", "is negative");
-    map.component = message.component;
-    map.up = checked_up(message.up);
+    PlaneMap map = map_without_planes(message);
     unpack_map(message.packed, message.unit, map);
     return map;
 }
