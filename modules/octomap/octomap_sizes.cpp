@@ -58,6 +58,7 @@ class Census {
         sizes.allocated_bytes = whole_.allocated_bytes();
         sizes.bt_bytes = likely_.bt_bytes(tree_);
         sizes.bt_nodes = likely_.count();
+        sizes.bt_leaves = likely_.leaves;
         sizes.bt_loaded_memory_bytes = likely_.memory_bytes(tree_);
         sizes.bt_loaded_allocated_bytes = likely_.allocated_bytes();
         sizes.bt_occupied_bytes = occupied_.bt_bytes(tree_);

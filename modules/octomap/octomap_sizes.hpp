@@ -19,6 +19,7 @@ struct OctomapSizes {
         0;  ///< what the same tree takes on the heap, but for OctoMap's 600 kB to cast rays
     std::size_t bt_bytes = 0;                   ///< of the binary, maximum likelihood file
     std::size_t bt_nodes = 0;                   ///< of the tree in that file, the root too
+    std::size_t bt_leaves = 0;                  ///< of these, without children
     std::size_t bt_loaded_memory_bytes = 0;     ///< OcTree::memoryUsage() of that file when it is read again
     std::size_t bt_loaded_allocated_bytes = 0;  ///< what that takes on the heap
     std::size_t bt_occupied_bytes = 0;  ///< of a binary file with the occupied space only, free space left

@@ -92,7 +92,7 @@ class SizeRows : public ::testing::Test {
   protected:
     SizeRows() {
         add_plane_rows(map_, WorkingBytes{1000, 3000}, rows_);
-        add_tree_rows(tree_, TreeOrigin::kBuilt, map_, 12345, rows_);
+        add_tree_rows(tree_, octomap::sizes_of(tree_), TreeOrigin::kBuilt, map_, 12345, rows_);
     }
     const PlaneMap map_ = wall_map();
     const ::octomap::OcTree tree_ = wall_tree();
@@ -121,6 +121,13 @@ TEST_F(SizeRows, OfTheOctomapAreWhatOctomapReadsAndWrites) {
     tree_.write(ot);
     EXPECT_EQ(row(rows_, "octomap", ".bt").at("bytes"), bt.str().size());
     EXPECT_EQ(row(rows_, "octomap", ".ot").at("bytes"), ot.str().size());
+    ::octomap::OcTree reloaded(kLeaf);
+    std::istringstream stored(bt.str());
+    ASSERT_TRUE(reloaded.readBinary(stored));
+    for (const char* form : {".bt", ".bt reloaded"})
+        EXPECT_EQ(row(rows_, "octomap", form).at("leaves"), reloaded.getNumLeafNodes()) << form;
+    for (const char* form : {".ot", "working tree"})
+        EXPECT_EQ(row(rows_, "octomap", form).at("leaves"), tree_.getNumLeafNodes()) << form;
     EXPECT_EQ(row(rows_, "octomap", "working tree and keyframes' depth").at("bytes"), 12345);
     EXPECT_GE(row(rows_, "octomap", "working tree").at("bytes").get<std::size_t>(), tree_.memoryUsage());
     EXPECT_GE(row(rows_, "octomap", "working tree").at("bytes"),
@@ -167,7 +174,7 @@ TEST_F(SizeRows, OfWhatPlanesExplainHoldTheCellsNearTheOutlineAlone) {
 
 TEST_F(SizeRows, OfATreeThatWasReadSayNothingOfHowItWasBuilt) {
     Json rows = Json::array();
-    add_tree_rows(tree_, TreeOrigin::kReadFromBt, map_, std::nullopt, rows);
+    add_tree_rows(tree_, octomap::sizes_of(tree_), TreeOrigin::kReadFromBt, map_, std::nullopt, rows);
     for (const Json& row : rows) {
         EXPECT_NE(row.at("form"), "working tree");
         EXPECT_NE(row.at("form"), ".ot");

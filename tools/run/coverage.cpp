@@ -157,19 +157,56 @@ class RowInside {
     std::vector<std::uint64_t> bits_;
 };
 
+/// How far each leaf is from the nearest outline of the planes that were added, up to a leaf's size.
+class LeafDistances {
+  public:
+    LeafDistances(const std::vector<Eigen::Vector3d>& leaves, double leaf_m)
+        : leaves_(leaves), reach_m_(leaf_m), cubes_(leaves, leaf_m), apart_m_(leaves.size(), kFar) {}
+
+    /// Returns the leaves that may lie within reach of it: valid until the next one.
+    const std::vector<std::size_t>& add(const PlanarRegion& region, const OutlineIndex& outline) {
+        cubes_.find_near(region, reach_m_, near_);
+        for (const std::size_t i : near_)
+            apart_m_[i] = std::min(apart_m_[i], distance_to(region, outline, leaves_[i]));
+        return near_;
+    }
+
+    /// Of a leaf to the nearest outline, metres; infinite beyond the reach.
+    const std::vector<double>& apart_m() const { return apart_m_; }
+
+  private:
+    static constexpr double kFar = std::numeric_limits<double>::infinity();
+
+    double distance_to(const PlanarRegion& region, const OutlineIndex& outline,
+                       const Eigen::Vector3d& p) const {
+        // Cheap tests before the outline: the plane, then a circle around the box.
+        const double off = region.plane.signed_distance(p);
+        if (std::abs(off) > reach_m_) return kFar;
+        const double apart = (p - region.box.frame_from_box.translation()).norm();
+        if (apart > region.box.half_extents.norm() + 2 * reach_m_) return kFar;
+        if (region.outline.empty()) return distance(region, p);
+        const Eigen::Vector3d q = region.box.frame_from_box.inverse(Eigen::Isometry) * p;
+        return std::hypot(outline.distance_within(q.head<2>(), reach_m_), off);
+    }
+
+    const std::vector<Eigen::Vector3d>& leaves_;
+    double reach_m_;
+    LeafCubes cubes_;
+    std::vector<double> apart_m_;
+    std::vector<std::size_t> near_;  ///< of the plane at hand
+};
+
 /// Compares one plane after the other with the leaves.
 class Comparison {
   public:
     Comparison(const std::vector<Eigen::Vector3d>& leaves, double leaf_m)
-        : leaves_(leaves), leaf_m_(leaf_m), cubes_(leaves, leaf_m), apart_m_(leaves.size(), kFar) {}
+        : leaves_(leaves), leaf_m_(leaf_m), distances_(leaves, leaf_m) {}
 
     void add(const PlanarRegion& region) {
         const OutlineIndex outline(region.outline);
-        cubes_.find_near(region, leaf_m_, near_);
-        for (const std::size_t i : near_)
-            apart_m_[i] = std::min(apart_m_[i], distance_to(region, outline, leaves_[i]));
+        const std::vector<std::size_t>& near = distances_.add(region, outline);
         const Raster raster(region.box, leaf_m_ / 2);
-        find_supported(region.box, raster);
+        find_supported(region.box, near, raster);
         count_samples(outline, raster);
     }
 
@@ -185,32 +222,18 @@ class Comparison {
     }
 
   private:
-    static constexpr double kFar = std::numeric_limits<double>::infinity();
-
     double share_within(double reach_m) const {
-        const auto count = std::count_if(apart_m_.begin(), apart_m_.end(),
-                                         [&](double apart_m) { return apart_m <= reach_m; });
+        const std::vector<double>& apart = distances_.apart_m();
+        const auto count =
+            std::count_if(apart.begin(), apart.end(), [&](double apart_m) { return apart_m <= reach_m; });
         return static_cast<double>(count) / static_cast<double>(leaves_.size());
     }
 
-    /// Of a leaf to the outline, metres; kFar beyond a leaf size.
-    double distance_to(const PlanarRegion& region, const OutlineIndex& outline,
-                       const Eigen::Vector3d& p) const {
-        // Cheap tests before the outline: the plane, then a circle around the box.
-        const double off = region.plane.signed_distance(p);
-        if (std::abs(off) > leaf_m_) return kFar;
-        const double apart = (p - region.box.frame_from_box.translation()).norm();
-        if (apart > region.box.half_extents.norm() + 2 * leaf_m_) return kFar;
-        if (region.outline.empty()) return distance(region, p);
-        const Eigen::Vector3d q = region.box.frame_from_box.inverse(Eigen::Isometry) * p;
-        return std::hypot(outline.distance_within(q.head<2>(), leaf_m_), off);
-    }
-
     /// The samples within one leaf size of one of the leaves near the plane, row by row.
-    void find_supported(const Box& box, const Raster& raster) {
+    void find_supported(const Box& box, const std::vector<std::size_t>& near, const Raster& raster) {
         touched_.clear();
         const Pose box_from_frame = box.frame_from_box.inverse(Eigen::Isometry);
-        for (const std::size_t i : near_) {
+        for (const std::size_t i : near) {
             const Eigen::Vector3d q = box_from_frame * leaves_[i];
             const double reach = leaf_m_ * (1 + 1e-6);
             const int last_row = std::min(raster.first_row(q.y() + reach) + 1, raster.rows - 1);
@@ -243,11 +266,9 @@ class Comparison {
 
     const std::vector<Eigen::Vector3d>& leaves_;
     double leaf_m_;
-    LeafCubes cubes_;
-    std::vector<double> apart_m_;  ///< of each leaf to the nearest outline; kFar beyond a leaf size
+    LeafDistances distances_;
     std::size_t samples_ = 0, supported_ = 0;
     // Of the plane at hand.
-    std::vector<std::size_t> near_;
     octomap::VoxelSet touched_;                           ///< column, row / 8, row % 8
     std::vector<std::pair<int, int>> supported_samples_;  ///< row, column
     std::vector<double> crossings_;
@@ -260,6 +281,19 @@ Coverage coverage_of(const PlaneMap& map, const std::vector<Eigen::Vector3d>& le
     Comparison comparison(leaves, leaf_m);
     for (const MapPlane& plane : map.planes) comparison.add(plane.region());
     return comparison.coverage();
+}
+
+std::vector<Eigen::Vector3d> explained_leaves(const PlaneMap& map, const std::vector<Eigen::Vector3d>& leaves,
+                                              double leaf_m) {
+    LeafDistances distances(leaves, leaf_m);
+    for (const MapPlane& plane : map.planes) {
+        const PlanarRegion region = plane.region();
+        distances.add(region, OutlineIndex(region.outline));
+    }
+    std::vector<Eigen::Vector3d> explained;
+    for (std::size_t i = 0; i < leaves.size(); ++i)
+        if (distances.apart_m()[i] <= leaf_m) explained.push_back(leaves[i]);
+    return explained;
 }
 
 }  // namespace planemap

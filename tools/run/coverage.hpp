@@ -21,4 +21,8 @@ struct Coverage {
 /// area is sampled at half a leaf size.
 Coverage coverage_of(const PlaneMap& map, const std::vector<Eigen::Vector3d>& leaves, double leaf_m);
 
+/// The leaves of Coverage::leaves_explained, in their order.
+std::vector<Eigen::Vector3d> explained_leaves(const PlaneMap& map, const std::vector<Eigen::Vector3d>& leaves,
+                                              double leaf_m);
+
 }  // namespace planemap

@@ -27,10 +27,6 @@ std::string kilobytes(const Json& bytes) {
     return format("%.1f", bytes.get<double>() / 1000);
 }
 
-}  // namespace
-
-namespace {
-
 /// What a frame costs, without sizes. Precondition: there was one.
 Moment moment_of(pipeline::Pipeline& pipeline) {
     const auto cpu_ms = [](messages::Shell& shell) { return shell.status().work_cpu_ms().sum(); };

@@ -25,16 +25,27 @@ std::int64_t points_bytes(double points) {
     return static_cast<std::int64_t>(kBytesPerPoint * points);
 }
 
-/// What a tree tells of itself, whether it was built or read from its file.
-void add_tree(const ::octomap::OcTree& tree, const octomap::OctomapSizes& s, const PlaneMap& map, Json& sizes,
-              Json& report) {
+/// What a row of the OctoMap takes once it is compressed.
+const Json& zstd_of(const Json& rows, const char* form, double resolution_m) {
+    const auto row = std::find_if(rows.begin(), rows.end(), [&](const Json& r) {
+        return r.at("map") == "octomap" && r.at("form") == form && r.at("resolution_m") == resolution_m &&
+               !r.at("explained_only").get<bool>();
+    });
+    return row->at("zstd_bytes");
+}
+
+/// What a tree tells of itself, whether it was built or read from its file, and its rows.
+void add_tree(const ::octomap::OcTree& tree, const octomap::OctomapSizes& s, TreeOrigin origin,
+              std::optional<std::size_t> corrections, const PlaneMap& map, Json& sizes, Json& report) {
+    const double resolution = tree.getResolution();
+    Json& rows = report["sizes"];
+    add_tree_rows(tree, s, origin, map, corrections, rows);
     sizes["octomap_bt"] = s.bt_bytes;
     sizes["octomap_occupied_leaves"] = points_bytes(static_cast<double>(s.occupied_leaves));
     sizes["octomap_bt_memory"] = s.bt_loaded_memory_bytes;
     sizes["octomap_bt_occupied"] = s.bt_occupied_bytes;
-    sizes["octomap_bt_zstd"] = zstd_bytes(octomap::bt_of(tree));
-    sizes["octomap_bt_occupied_zstd"] = zstd_bytes(octomap::bt_occupied_of(tree));
-    const double resolution = tree.getResolution();
+    sizes["octomap_bt_zstd"] = zstd_of(rows, kBt, resolution);
+    sizes["octomap_bt_occupied_zstd"] = zstd_of(rows, kBtOccupied, resolution);
     report["octomap"] = {{"resolution_m", resolution},
                          {"nodes", s.nodes},
                          {"leaves", s.leaves},
@@ -45,14 +56,11 @@ void add_tree(const ::octomap::OcTree& tree, const octomap::OctomapSizes& s, con
     report["coverage"]["leaves_explained_half"] = c.leaves_explained_half;
 }
 
-/// The rows of the OctoMap, and of what it would be at other resolutions; which of those a robot has no
+/// The rows of what the OctoMap would be at other resolutions. Returns those of them that a robot has no
 /// memory for.
-void add_octomap_rows(const octomap::OctomapBuilder& builder, const PlaneMap& map,
-                      const std::vector<double>& resolutions_m, const octomap::VoxelSet& cloud_1cm,
-                      Json& rows, Json& left_out) {
-    const octomap::OctomapSizes sizes = builder.sizes();
-    add_tree_rows(builder.tree(), TreeOrigin::kBuilt, map,
-                  builder.working_bytes() - sizes.memory_bytes + sizes.allocated_bytes, rows);
+Json add_other_resolutions(const octomap::OctomapBuilder& builder, const octomap::OctomapSizes& sizes,
+                           const PlaneMap& map, const std::vector<double>& resolutions_m, Json& rows) {
+    Json left_out = Json::array();
     for (const double resolution_m : resolutions_m) {
         const double finer = builder.tree().getResolution() / resolution_m;
         if (finer == 1) continue;
@@ -61,24 +69,27 @@ void add_octomap_rows(const octomap::OctomapBuilder& builder, const PlaneMap& ma
             left_out.push_back(resolution_m);
             continue;
         }
-        const auto tree = builder.tree_at(resolution_m);
-        if (tree != nullptr) add_tree_rows(*tree, TreeOrigin::kBuilt, map, std::nullopt, rows);
+        if (const auto tree = builder.tree_at(resolution_m))
+            add_tree_rows(*tree, octomap::sizes_of(*tree), TreeOrigin::kBuilt, map, std::nullopt, rows);
     }
-    add_cloud_rows(cloud_1cm, rows);
+    return left_out;
 }
 
 void add_octomap(const octomap::OctomapBuilder& builder, const PlaneMap& map,
                  const std::vector<double>& resolutions_m, Json& sizes, Json& report) {
     const octomap::OctomapSizes s = builder.sizes();
     const octomap::VoxelSet cloud_1cm = builder.voxel_cloud(0.01);
+    const std::size_t working = builder.working_bytes();
     sizes["octomap_memory"] = s.memory_bytes;
     sizes["octomap_ot"] = s.ot_bytes;
     sizes["voxel_cloud_1cm"] = points_bytes(static_cast<double>(cloud_1cm.size()));
-    sizes["octomap_working"] = builder.working_bytes();
-    add_tree(builder.tree(), s, map, sizes, report);
+    sizes["octomap_working"] = working;
+    add_tree(builder.tree(), s, TreeOrigin::kBuilt, working - s.memory_bytes + s.allocated_bytes, map, sizes,
+             report);
     report["octomap"]["rebuilds"] = builder.rebuilds();
-    report["sizes_left_out"] = Json::array();
-    add_octomap_rows(builder, map, resolutions_m, cloud_1cm, report["sizes"], report["sizes_left_out"]);
+    const Json left_out = add_other_resolutions(builder, s, map, resolutions_m, report["sizes"]);
+    report["sizes_left_out"] = left_out;
+    add_cloud_rows(cloud_1cm, report["sizes"]);
 }
 
 std::string share_text(const Json& share) {
@@ -232,8 +243,8 @@ void add_sizes(pipeline::Pipeline& pipeline, std::int64_t frames, const std::vec
 
 void add_stored_octomap(const std::filesystem::path& bt_file, const PlaneMap& map, Json& report) {
     const std::unique_ptr<::octomap::OcTree> tree = octomap::read_bt(bt_file);
-    add_tree(*tree, octomap::sizes_of(*tree), map, report["sizes_bytes"], report);
-    add_tree_rows(*tree, TreeOrigin::kReadFromBt, map, std::nullopt, report["sizes"]);
+    add_tree(*tree, octomap::sizes_of(*tree), TreeOrigin::kReadFromBt, std::nullopt, map,
+             report["sizes_bytes"], report);
 }
 
 std::string sizes_markdown(const Json& report) {

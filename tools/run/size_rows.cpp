@@ -16,7 +16,7 @@
 #include "messages/convert.hpp"
 #include "octomap/mask_octree.hpp"
 #include "octomap/octomap_sizes.hpp"
-#include "run/explained_leaves.hpp"
+#include "run/coverage.hpp"
 #include "run/report_text.hpp"
 #include "run/vdb_bytes.hpp"
 
@@ -59,7 +59,7 @@ void add_occupied_rows(const ::octomap::OcTree& tree, const std::vector<Eigen::V
     const double resolution = tree.getResolution();
     const std::vector<octomap::Voxel> cells = octomap::cells_at(leaves, resolution);
     std::vector<SizeRow> occupied = {
-        file_row("octomap", ".bt, occupied only", resolution, octomap::bt_occupied_of(tree)),
+        file_row("octomap", kBtOccupied, resolution, octomap::bt_occupied_of(tree)),
         file_row("octree", "a byte of children a node", resolution, octomap::mask_octree(cells))};
 #ifdef PLANEMAP_OPENVDB
     occupied.push_back(file_row("openvdb", "topology", resolution, vdb_topology(cells)));
@@ -183,26 +183,28 @@ void add_plane_rows(const PlaneMap& map, const std::optional<WorkingBytes>& work
                        .json());
 }
 
-void add_tree_rows(const ::octomap::OcTree& tree, TreeOrigin origin, const PlaneMap& map,
-                   std::optional<std::size_t> corrections, Json& rows) {
-    const octomap::OctomapSizes sizes = octomap::sizes_of(tree);
+void add_tree_rows(const ::octomap::OcTree& tree, const octomap::OctomapSizes& sizes, TreeOrigin origin,
+                   const PlaneMap& map, std::optional<std::size_t> corrections, Json& rows) {
     const double resolution = tree.getResolution();
-    const auto add = [&](SizeRow row) {
+    const auto add = [&](SizeRow row, std::size_t leaves) {
         row.free_space = true;
-        row.leaves = sizes.leaves;
+        row.leaves = leaves;
         rows.push_back(row.json());
     };
     if (origin == TreeOrigin::kBuilt) {
-        add(memory_row("octomap", "working tree", resolution, sizes.allocated_bytes, "fixed poses"));
+        add(memory_row("octomap", "working tree", resolution, sizes.allocated_bytes, "fixed poses"),
+            sizes.leaves);
         if (corrections)
             add(memory_row("octomap", "working tree and keyframes' depth", resolution, *corrections,
-                           "corrections"));
+                           "corrections"),
+                sizes.leaves);
         SizeRow full = file_row("octomap", ".ot", resolution, octomap::ot_of(tree));
         full.goes_on = "fixed poses";
-        add(full);
+        add(full, sizes.leaves);
     }
-    add(file_row("octomap", ".bt", resolution, octomap::bt_of(tree)));
-    add(memory_row("octomap", ".bt reloaded", resolution, sizes.bt_loaded_allocated_bytes, "no"));
+    add(file_row("octomap", kBt, resolution, octomap::bt_of(tree)), sizes.bt_leaves);
+    add(memory_row("octomap", ".bt reloaded", resolution, sizes.bt_loaded_allocated_bytes, "no"),
+        sizes.bt_leaves);
     const std::vector<Eigen::Vector3d> leaves = octomap::occupied_voxels_of(tree);
     add_occupied_rows(tree, leaves, false, rows);
     const std::vector<Eigen::Vector3d> explained = explained_leaves(map, leaves, resolution);

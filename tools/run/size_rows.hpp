@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/plane_map.hpp"
+#include "octomap/octomap_sizes.hpp"
 #include "octomap/voxel_set.hpp"
 
 namespace planemap {
@@ -52,11 +53,14 @@ void add_plane_rows(const PlaneMap& map, const std::optional<WorkingBytes>& work
 /// How a tree came to be: one that was read from its .bt file does not tell what the working one took.
 enum class TreeOrigin { kBuilt, kReadFromBt };
 
-/// Rows of an OctoMap (pruned, inner nodes up to date), of the occupied space alone in the forms that there
-/// are, and of the leaves that planes explain. `corrections` are the bytes to follow corrections; none: not
-/// known.
-void add_tree_rows(const ::octomap::OcTree& tree, TreeOrigin origin, const PlaneMap& map,
-                   std::optional<std::size_t> corrections, nlohmann::ordered_json& rows);
+/// Forms of an OctoMap's files.
+inline constexpr const char *kBt = ".bt", *kBtOccupied = ".bt, occupied only";
+
+/// Rows of an OctoMap (pruned, inner nodes up to date; `sizes` are its), of the occupied space alone in the
+/// forms that there are, and of the leaves that planes explain. `corrections` are the bytes to follow
+/// corrections; none: not known.
+void add_tree_rows(const ::octomap::OcTree& tree, const octomap::OctomapSizes& sizes, TreeOrigin origin,
+                   const PlaneMap& map, std::optional<std::size_t> corrections, nlohmann::ordered_json& rows);
 
 /// Rows of clouds of 1, 2 and 5 cm voxels, 12 bytes each, from that of 1 cm.
 void add_cloud_rows(const octomap::VoxelSet& cloud_1cm, nlohmann::ordered_json& rows);
