@@ -217,9 +217,16 @@ Surfaces PlaneMapper::surfaces() const {
     return surfaces;
 }
 
-SeenSpace PlaneMapper::seen_space() const {
+SeenSpace PlaneMapper::seen_space(const std::function<bool()>& goes_on) const {
+    constexpr std::size_t kPasses = 16;  // so that those that are looked at are spread over the map
     SeenThrough seen = seen_before_;
-    for (const Viewpoint& view : viewpoints(keyframes_)) seen.look(view);
+    const std::vector<Viewpoint> views = viewpoints(keyframes_);
+    for (std::size_t pass = 0; pass < kPasses; ++pass) {
+        for (std::size_t i = pass; i < views.size(); i += kPasses) {
+            if (goes_on && !goes_on()) return seen.space();
+            seen.look(views[i]);
+        }
+    }
     return seen.space();
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -102,8 +103,10 @@ class PlaneMapper {
     std::size_t keyframe_bytes() const { return keyframes_.memory_bytes(); }
 
     /// Space that keyframes and looks saw to be empty, see SeenThrough; also those that were folded, and
-    /// what the map to start from knew. It is found when asked for: some milliseconds a room.
-    SeenSpace seen_space() const;
+    /// what the map to start from knew. It is found when asked for, which takes milliseconds a keyframe
+    /// (docs/map.md). `goes_on` is asked before each of them: when it says no, space that only others saw is
+    /// left unknown. Empty: all of them.
+    SeenSpace seen_space(const std::function<bool()>& goes_on = {}) const;
 
     /// Exact moments of a plane's points, world frame; zero for an unknown id, and of a plane of start_from()
     /// those of points spread evenly over it.

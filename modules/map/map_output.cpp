@@ -22,6 +22,7 @@ namespace {
 constexpr std::int64_t kWritePeriodUs = 5000000;
 constexpr std::int64_t kTimesTheCost = 50;        // of a write, until the next one
 constexpr std::int64_t kRetryPeriodUs = 1000000;  // after a write that failed
+constexpr std::int64_t kSeenSpaceUs = 500000;     // to find what was seen to be empty: a stop waits for it
 constexpr const char* kFile = "plane_map.lcmlog";
 
 /// Whether an error says that a disk has no room or fails, which may pass, and not that a path is wrong.
@@ -97,12 +98,13 @@ void MapOutput::write(const ComponentMaps& maps) {
     const std::int64_t start = messages::now_us();
     make_folder(folder_);  // somebody may have removed it
     const std::vector<const PlaneMapper*> all = maps.all();
+    const auto has_time = [&] { return messages::now_us() - start < kSeenSpaceUs; };
     for (std::size_t number = 1; number <= kMostComponentFiles; ++number) {
         if (number == 1 && !make_way(maps)) break;
         const std::filesystem::path path = folder_ / component_file(kFile, number);
         std::error_code ignored;
         if (number <= all.size())
-            write_plane_map(path, all[number - 1]->map(), all[number - 1]->seen_space());
+            write_plane_map(path, all[number - 1]->map(), all[number - 1]->seen_space(has_time));
         else
             std::filesystem::remove(path, ignored);
     }

@@ -12,7 +12,8 @@ namespace planemap::map {
 /// Where the maps of a run are on disk: plane_map.lcmlog, and plane_map_2.lcmlog ... of further components,
 /// in a folder, each beside and renamed. A map of an earlier process stays until there are planes to write,
 /// and is then kept under another name (keep_earlier_map()). A disk that is full, or a write that fails, ends
-/// nothing: it is said in error() and tried again every second.
+/// nothing: it is said in error() and tried again every second. Of what was seen to be empty it holds what is
+/// found in half a second, since a stop waits for that; the rest is unknown.
 class MapOutput {
   public:
     /// An empty folder: nothing is written.

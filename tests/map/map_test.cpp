@@ -797,5 +797,32 @@ TEST(PlaneMapper, SurfacesGiveThePlanesOfAnotherMapperTheirIds) {
     EXPECT_EQ(other.map().planes.back().id, 2) << "no id twice";
 }
 
+/// A stop does not wait for all views; what only the others saw is unknown then, never free.
+TEST(PlaneMapper, OfSeenSpaceAPartIsFoundWhereThereIsNoTimeForAll) {
+    PlaneMapper mapper;
+    for (int id = 0; id < 8; ++id) {
+        const Pose world_from_camera = camera_at({3.0 * id, 0, 0});
+        const Rectangle wall{facing({3.0 * id, 0, 3}, {0, 0, -1}, {1, 0, 0}), 1.5, 1.5, {}};
+        mapper.add(keyframe(id, {wall}, world_from_camera), world_from_camera);
+    }
+    const SeenSpace all = mapper.seen_space();
+    ASSERT_GT(all.volume(), 0);
+    EXPECT_EQ(mapper.seen_space([] { return true; }), all);
+    EXPECT_TRUE(mapper.seen_space([] { return false; }).empty());
+    int asked = 0;
+    const SeenSpace part = mapper.seen_space([&] { return ++asked <= 2; });
+    EXPECT_EQ(asked, 3);
+    EXPECT_GT(part.volume(), 0);
+    EXPECT_LT(part.volume(), all.volume());
+    for (const SeenSpace::Block& block : part.blocks()) {
+        const Eigen::Vector3d corner = SeenSpace::corner_of(block.at);
+        for (int n = 0; n < 512; n += 7) {
+            const Eigen::Vector3d p =
+                corner + SeenSpace::kVoxel_m * Eigen::Vector3d(n % 8 + 0.5, n / 8 % 8 + 0.5, n / 64 + 0.5);
+            EXPECT_TRUE(!part.is_free(p) || all.is_free(p));
+        }
+    }
+}
+
 }  // namespace
 }  // namespace planemap::map
