@@ -9,7 +9,7 @@
 namespace planemap::map {
 
 namespace {
-constexpr std::size_t kMaxWaiting = 4096, kMaxWaitingLooks = 64;
+constexpr std::size_t kMaxUnplaced = 4096, kMaxUnplacedLooks = 64;
 }
 
 ComponentMaps::ComponentMaps(const MapOptions& options) : options_(options) {
@@ -51,14 +51,14 @@ void ComponentMaps::wait(const Keyframe& keyframe) {
     }
     Waiting& waiting = waiting_[keyframe.id] = {keyframe, {}};
     waiting.keyframe.features = {};
-    if (waiting_.size() <= kMaxWaiting) return;
+    if (waiting_.size() <= kMaxUnplaced) return;
     waiting_.erase(waiting_.begin());
     ++losses_.keyframes_unplaced;
 }
 
 bool ComponentMaps::add(const Look& look) {
     if (const auto waiting = waiting_.find(look.keyframe_id); waiting != waiting_.end()) {
-        if (waiting->second.looks.size() < kMaxWaitingLooks)
+        if (waiting->second.looks.size() < kMaxUnplacedLooks)
             waiting->second.looks.push_back(look);
         else
             ++losses_.looks_refused;

@@ -212,11 +212,11 @@ int EvidenceGrid::miss_before(const Block& block, int looks) {
     return change(block, [&](EvidenceCells& c, std::uint64_t cells) { c.miss_before(cells, looks); });
 }
 
-bool EvidenceGrid::is_near(const Bitmap& cells, const Block& block, int beside) const {
+bool is_near(const EvidenceGrid& grid, const Bitmap& cells, const EvidenceBlock& block, int beside) {
     const int first_row = std::max(block.y - beside, cells.y0());
     const int last_row = std::min(block.y + 4 + beside, cells.y0() + cells.rows());
     // The block's bits, and those beside them, as far as they lie in the words before and after.
-    const int word = block.word + word0_ - cells.word0(), first = 4 * block.nibble;
+    const int word = block.word + grid.word0() - cells.word0(), first = 4 * block.nibble;
     const std::uint64_t four = std::uint64_t{15} << first;
     std::uint64_t here = four;
     for (int i = 1; i <= beside; ++i) here |= four << i | four >> i;
@@ -234,10 +234,11 @@ bool EvidenceGrid::is_near(const Bitmap& cells, const Block& block, int beside) 
     return false;
 }
 
-bool EvidenceGrid::is_undecided(const Block& block) const {
+bool is_undecided(const EvidenceGrid& grid, const EvidenceBlock& block) {
     std::uint64_t cells = 0;
-    for (int r = std::max(block.y, y0_); r < std::min(block.y + 4, y0_ + rows_); ++r) {
-        const EvidenceCells& c = row(r)[block.word];
+    const int last = std::min(block.y + 4, grid.y0() + grid.rows());
+    for (int r = std::max(block.y, grid.y0()); r < last; ++r) {
+        const EvidenceCells& c = grid.row(r)[block.word];
         cells |= c.seen() & ~c.decided();
     }
     return (cells >> (4 * block.nibble) & 15) != 0;

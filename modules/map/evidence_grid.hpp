@@ -11,6 +11,15 @@
 
 namespace planemap::map {
 
+/// 4 x 4 cells of a grid, of which some count.
+struct EvidenceBlock {
+    Eigen::Vector2d middle;        ///< metres in the grid's x, y
+    int y, word, nibble;           ///< first row, word in a row of the grid, which four bits of it
+    std::uint16_t cells = 0xffff;  ///< of the block that count: four bits a row
+    std::uint16_t asked = 0;       ///< views, by who asks them
+    std::uint16_t missed = 0;      ///< looks that saw past it, of these
+};
+
 /// Where a plane has been seen and where something beyond it was: a raster in the plane that knows both for
 /// each cell (EvidenceCells), 64 cells at once. It grows with the plane's extent and not with the number of
 /// observations. Cells are aligned to the origin of the grid's frame.
@@ -26,14 +35,7 @@ class EvidenceGrid {
     bool empty() const { return cells_.empty(); }
     std::size_t memory_bytes() const { return cells_.capacity() * sizeof(EvidenceCells); }
 
-    /// 4 x 4 cells, of which some count.
-    struct Block {
-        Eigen::Vector2d middle;        ///< metres in the grid's x, y
-        int y, word, nibble;           ///< first row, word in a row, which four bits of it
-        std::uint16_t cells = 0xffff;  ///< of the block that count: four bits a row
-        std::uint16_t asked = 0;       ///< views, by who asks them
-        std::uint16_t missed = 0;      ///< looks that saw past it, of these
-    };
+    using Block = EvidenceBlock;
 
     /// What `looks` looks saw after all others: the cells whose centre lies inside the polygon (metres in the
     /// grid's x, y), with a support of 2^strength (strength 0 to 2). Returns how many cells came to the
@@ -60,10 +62,6 @@ class EvidenceGrid {
     /// further down, row after row.
     void seen_blocks(const Eigen::Vector2d& low, const Eigen::Vector2d& high,
                      std::vector<Block>& blocks) const;
-    /// Whether a bitmap has cells in a block, or so many cells beside it.
-    bool is_near(const Bitmap& cells, const Block& block, int beside) const;
-    /// Whether looks before all others may say something of it.
-    bool is_undecided(const Block& block) const;
     /// That looks saw past a block, after all others or before them; returns how many cells left the shape.
     int miss(const Block& block, int looks);
     int miss_before(const Block& block, int looks);
@@ -99,5 +97,10 @@ class EvidenceGrid {
     std::vector<EvidenceCells> cells_;
     Bitmap inside_;  ///< scratch of add()
 };
+
+/// Whether a bitmap of the grid's cells has some in a block, or so many cells beside it.
+bool is_near(const EvidenceGrid& grid, const Bitmap& cells, const EvidenceBlock& block, int beside);
+/// Whether looks before all others may say something of a block.
+bool is_undecided(const EvidenceGrid& grid, const EvidenceBlock& block);
 
 }  // namespace planemap::map

@@ -92,7 +92,7 @@ void FreeSpace::look_back(PlaneEstimate& plane, const std::vector<SeenCells>& se
         if (++looked < tidy_at) continue;
         tidy_at += std::max(kTidyAfter, looked / 2);
         std::erase_if(blocks, [&](const EvidenceGrid::Block& block) {
-            return block.asked >= kMostAsked || !plane.grid.is_undecided(block);
+            return block.asked >= kMostAsked || !is_undecided(plane.grid, block);
         });
     }
     for (; next != seen.end(); ++next) plane.grid.hit_before(next->cells, next->looks);
@@ -171,7 +171,7 @@ void FreeSpace::for_each_past(const PlaneEstimate& plane, const Viewpoint& viewp
         ++block.asked;
         if (!*is_past) continue;
         const bool is_seen = std::any_of(own.begin(), own.end(), [&](const Bitmap* cells) {
-            return plane.grid.is_near(*cells, block, kBeside);
+            return is_near(plane.grid, *cells, block, kBeside);
         });
         if (!is_seen) f(block);
     }

@@ -4,7 +4,6 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <map>
 #include <stdexcept>
 
 #include "core/components.hpp"
@@ -14,14 +13,6 @@
 #include "messages/decode.hpp"
 
 namespace planemap::map {
-
-namespace {
-constexpr std::int64_t kSavePeriodUs = 1000000;  ///< of poses and plane ids to the journal
-/// In the journal, of each keyframe: as many as the map keeps.
-constexpr auto kLooksKept = static_cast<int>(StoredKeyframe::kMostLater);
-constexpr const char* kEarlierIds = "PLANEMAP_REGION_PLANES";  ///< in journals before PLANEMAP_SURFACES
-
-}  // namespace
 
 MapShell::MapShell(messages::Bus& bus, const MapShellOptions& options)
     : bus_(bus),
@@ -38,7 +29,7 @@ MapShell::MapShell(messages::Bus& bus, const MapShellOptions& options)
     status_.lost("fine edges of planes, since the map to start from is very large",
                  static_cast<std::int64_t>(mapper().coarsened()));
     if (!options.journal.empty()) {
-        journal_ = std::make_unique<messages::Journal>(options.journal);
+        journal_ = std::make_unique<MapJournal>(options.journal);
         resume();
     }
     output_.open(maps_);
@@ -104,99 +95,41 @@ void MapShell::on_trajectory(const messages::RawMessage& message) {
         maps_.update(trajectory);
     }
     watch_.named(trajectory, messages::now_us());
-    if (journal_) trajectory_.assign(message.bytes.begin(), message.bytes.end());
+    if (journal_) journal_->keep_poses(message.bytes);
     tell_losses();
     publish();
 }
 
 /// Takes keyframes, their poses and the planes' ids from the process before.
 void MapShell::resume() {
-    for (const std::string& complaint : journal_->complaints()) spdlog::warn("map: {}", complaint);
-    const std::string file = journal_->file().string();
-    std::vector<std::uint8_t> trajectory;
-    Surfaces surfaces;
-    std::optional<keyframe_t> newest;
-    std::vector<std::uint8_t> newest_bytes;
-    journal_->replay([&](const messages::LogEvent& event) {
-        if (event.channel == messages::channels::kTrajectory) {
-            trajectory = event.bytes;
-        } else if (event.channel == kEarlierIds) {
-            bus_.complaints().add(file + ": ids of planes in an earlier format: planes get new ones");
-        } else {
-            try {
-                if (event.channel == messages::channels::kSurfaces) {
-                    surfaces = messages::from_message(messages::decode<surfaces_t>(event.bytes));
-                    return;
-                }
-                if (event.channel == messages::channels::kLook) {
-                    maps_.add(messages::from_message(messages::decode<look_t>(event.bytes)));
-                    return;
-                }
-                keyframe_t received = messages::decode<keyframe_t>(event.bytes);
-                const Keyframe keyframe = messages::from_message(received);
-                watch_.came(keyframe.id, keyframe.previous_id, keyframe.utime);
-                maps_.add(keyframe);
-                newest = std::move(received);
-                newest_bytes = event.bytes;
-            } catch (const messages::MessageError& error) {
-                bus_.complaints().add(file + ": a message left out: " + error.what());
-            }
-        }
-    });
-    if (newest) {
-        keyframe_guard_.resume(newest->session, newest->seq, newest->utime, newest_bytes);
-        keyframes_of_ = newest->session;
+    const auto on_keyframe = [&](const keyframe_t& received) {
+        const Keyframe keyframe = messages::from_message(received);
+        watch_.came(keyframe.id, keyframe.previous_id, keyframe.utime);
+        maps_.add(keyframe);
+    };
+    const auto on_look = [&](const look_t& received) { maps_.add(messages::from_message(received)); };
+    const MapJournal::Earlier earlier = journal_->replay(bus_.complaints(), on_keyframe, on_look);
+    if (earlier.newest) {
+        const keyframe_t& newest = *earlier.newest;
+        keyframe_guard_.resume(newest.session, newest.seq, newest.utime, earlier.newest_bytes);
+        keyframes_of_ = newest.session;
     }
-    if (trajectory.empty()) return;
-    const trajectory_t last = messages::decode<trajectory_t>(trajectory);
-    trajectory_guard_.resume(last.session, last.seq, std::nullopt, trajectory);
+    if (earlier.trajectory.empty()) return;
+    const trajectory_t last = messages::decode<trajectory_t>(earlier.trajectory);
+    trajectory_guard_.resume(last.session, last.seq, std::nullopt, earlier.trajectory);
     const KeyframeTrajectory poses = messages::from_message(last);
     maps_.update(poses);
-    maps_.restore_ids(surfaces);
+    maps_.restore_ids(earlier.surfaces);
     watch_.named(poses, messages::now_us());
     output_.claim();
     tell_losses();
     spdlog::info("map: goes on with {} planes of {} keyframes of {}", mapper().map().planes.size(),
-                 maps_.keyframes(), file);
+                 maps_.keyframes(), journal_->file());
     publish();
 }
 
-/// Once a second: poses and ids, of which a kill loses no more; now and then: the journal becomes as small as
-/// the map is.
-void MapShell::tend_journal() {
-    const std::int64_t now = messages::now_us();
-    if (!trajectory_.empty() && now - saved_us_ >= kSavePeriodUs) save_poses_and_ids();
-    if (journal_->is_due_to_compact()) {
-        save_poses_and_ids();
-        std::int64_t last = -1;     // of the poses, and of the ids, only the last ones count
-        std::map<int, int> newest;  // number of the last look of each keyframe
-        journal_->replay([&](const messages::LogEvent& event) {
-            if (event.channel == messages::channels::kSurfaces) last = event.number;
-            if (event.channel != messages::channels::kLook) return;
-            const auto look = messages::decode<look_t>(event.bytes);
-            newest[look.keyframe_id] = std::max(newest[look.keyframe_id], look.number);
-        });
-        journal_->compact([&](const messages::LogEvent& event) {
-            if (event.channel == messages::channels::kKeyframe)
-                return maps_.has_keyframe(messages::decode<keyframe_t>(event.bytes).id);
-            if (event.channel == messages::channels::kLook) {
-                const auto look = messages::decode<look_t>(event.bytes);
-                return maps_.has_keyframe(look.keyframe_id) &&
-                       (look.number == 0 || newest[look.keyframe_id] - look.number < kLooksKept);
-            }
-            return event.number >= last - 1;
-        });
-    }
-    if (const auto news = journal_->news()) status_.remark("journal", *news);
-}
-
-void MapShell::save_poses_and_ids() {
-    if (trajectory_.empty()) return;
-    journal_->add(messages::channels::kTrajectory, trajectory_);
-    journal_->add(messages::channels::kSurfaces,
-                  messages::to_bytes(messages::to_message(maps_.surfaces(), surfaces_seq_, bus_.session())));
-    trajectory_.clear();
-    saved_us_ = messages::now_us();
+std::vector<std::uint8_t> MapShell::surfaces_message() const {
+    return messages::to_bytes(messages::to_message(maps_.surfaces(), surfaces_seq_, bus_.session()));
 }
 
 /// What the mapper left out since the last time.
@@ -270,7 +203,11 @@ void MapShell::tell() {
 }
 
 int MapShell::poll() {
-    if (journal_) tend_journal();
+    if (journal_) {
+        journal_->tend([this] { return surfaces_message(); },
+                       [this](int id) { return maps_.has_keyframe(id); });
+        if (const auto news = journal_->news()) status_.remark("journal", *news);
+    }
     watch_.tell(messages::now_us());
     if (published_us_ != 0 && messages::now_us() - published_us_ >= messages::kRepeat_us) {
         // For those who come late while the camera stands still: the same message again, which is no work.
@@ -291,7 +228,7 @@ void MapShell::finish() {
     settle();
     if (is_up_missing())
         status_.remark("up", "up is not known, so no plane has a label: " + mapper().why_up());
-    if (journal_) save_poses_and_ids();
+    if (journal_) journal_->save([this] { return surfaces_message(); });
     if (output_.finish(maps_)) tell();
     if (output_.leaves_earlier())
         spdlog::info("{}: no planes came, so the earlier map stays", output_.file().string());

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "map/component_maps.hpp"
+#include "map/map_journal.hpp"
 #include "map/map_output.hpp"
 #include "messages/channels.hpp"
-#include "messages/journal.hpp"
 #include "messages/keyframe_watch.hpp"
 #include "messages/process.hpp"
 #include "messages/stream_guard.hpp"
@@ -57,8 +57,7 @@ class MapShell : public messages::Shell {
     void on_camera(const messages::RawMessage& message);
     void on_acceleration(const messages::RawMessage& message);
     void resume();
-    void tend_journal();
-    void save_poses_and_ids();
+    std::vector<std::uint8_t> surfaces_message() const;
     void tell_losses();
     void publish();
     void publish_maps(std::int32_t seq);
@@ -75,12 +74,10 @@ class MapShell : public messages::Shell {
     messages::StreamGuard keyframe_guard_{messages::channels::kKeyframe, "keyframes", status_};
     messages::StreamGuard trajectory_guard_{messages::channels::kTrajectory, "trajectories", status_, false};
     messages::KeyframeWatch watch_;
-    std::unique_ptr<messages::Journal> journal_;  ///< null without
-    std::vector<std::uint8_t> trajectory_;        ///< the last one, where the journal does not have it yet
-    std::int64_t keyframes_of_ = 0;               ///< session of the last keyframe
-    std::int64_t saved_us_ = 0;                   ///< wall clock when the journal got the last one
-    std::int64_t newest_utime_ = 0;               ///< of the keyframes in the map
-    MapLosses told_;                              ///< what the status knows
+    std::unique_ptr<MapJournal> journal_;  ///< null without
+    std::int64_t keyframes_of_ = 0;        ///< session of the last keyframe
+    std::int64_t newest_utime_ = 0;        ///< of the keyframes in the map
+    MapLosses told_;                       ///< what the status knows
     std::int32_t seq_ = 0, surfaces_seq_ = 0;
     std::size_t told_rebuilds_ = 0;  ///< when the surfaces were last told
     std::int64_t published_us_ = 0;  ///< wall clock of the last map; 0: none yet
