@@ -69,6 +69,7 @@ class Odometry::State {
     int old_colors_ = 0;                         ///< frames in a row whose colour was not new
     OdometryEstimate last_;                      ///< of the last frame that was not stale
     Matrix6d last_measured_ = Matrix6d::Zero();  ///< its covariance without what its moment adds
+    int unseen_steps_ = 0;  ///< frames in a row that knew a direction by the prediction alone
 };
 
 OdometryResult Odometry::State::process(const OdometryFrame& input) {
@@ -175,6 +176,7 @@ OdometryResult Odometry::State::find_again(PreparedFrame& frame) {
     }
     motion_.follow(frame.utime, *located);
     last_measured_.setZero();
+    unseen_steps_ = 0;
     method_->begin(frame);
     camera_ = *frame.camera;
     const FrameMotion motion{motion_.velocity(), frame.color_offset_s};
@@ -215,6 +217,7 @@ OdometryResult Odometry::State::follow(PreparedFrame& frame, Located& located) {
         readout_.learn(frame.readout_s, located.track.alignment);
     keyframes_.make_current(located.keyframe_id);
     const double elapsed = motion_.seconds_since_pose(frame.utime);
+    unseen_steps_ = located.track.degenerate && !located.track.by_prior ? unseen_steps_ + 1 : 0;
     last_measured_ = measured_covariance(located, motion_.predict(frame.utime, located.odom_from_keyframe));
     motion_.follow(frame.utime, located);
     method_->follow(frame, located, elapsed);
@@ -247,17 +250,20 @@ OdometryEstimate Odometry::State::estimate_at(const Keyframe& keyframe) const {
 }
 
 /// Located::covariance(); and where a direction is known by the prediction alone, that starts from a pose
-/// that is no surer, and uncertainty adds up from frame to frame; not where a motion prior says it, whose own
-/// uncertainty grows with the way. Before the motion follows it.
+/// that is no surer, and uncertainty adds up from frame to frame. So does that of the velocity, of which
+/// nobody sees how it changes: by white accelerations, the n-th step is n times as uncertain as the first.
+/// Not where a motion prior says it, whose own uncertainty grows with the way. Before the motion follows it.
 Matrix6d Odometry::State::measured_covariance(const Located& located, const Guess& predicted) const {
     Matrix6d covariance = located.covariance();
+    if (unseen_steps_ == 0) return covariance;
     const bool goes_on = last_.status != TrackingStatus::kLost && last_.keyframe_id == located.keyframe_id;
-    if (!located.track.degenerate || located.track.by_prior || !goes_on) return covariance;
+    const Matrix6d before = goes_on ? last_measured_ : Matrix6d::Zero();
+    const double steps2 = static_cast<double>(unseen_steps_) * unseen_steps_;
     const auto inverse = [](const Matrix6d& matrix) -> Matrix6d {
         return matrix.ldlt().solve(Matrix6d::Identity());
     };
     const Matrix6d& information = located.track.alignment.information;
-    const Matrix6d from_last = inverse(inverse(predicted.information) + last_measured_);
+    const Matrix6d from_last = inverse(steps2 * inverse(predicted.information) + before);
     const Matrix6d surer = inverse(information),
                    unsurer = inverse(information - predicted.information + from_last);
     return covariance + 0.5 * (unsurer + unsurer.transpose()) - 0.5 * (surer + surer.transpose());
@@ -279,6 +285,7 @@ std::optional<Keyframe> Odometry::State::begin(PreparedFrame& frame) {
     if (!can_be_tracked_against(local, 2 * options_.min_inliers)) return std::nullopt;
     motion_.start(frame.utime);
     last_measured_.setZero();
+    unseen_steps_ = 0;
     method_->begin(frame);
     keyframes_.clear();
     return add_keyframe(frame, std::move(local), nullptr, at_rest);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "core/rounding.hpp"
 
@@ -27,9 +28,14 @@ struct CellSums {
 };
 
 /// Not segmentation's fit: over pixels of a small cell, each weighted alike, with its own bytes.
+struct CellFit {
+    Plane plane;
+    double tilt = 0;  ///< radians, standard deviation about either axis
+};
+
 /// The plane of 1/z = a u + b v + c; d = 0 when the readings are not on one.
-Plane fit_cell(const CellSums& sums, double u0, double v0, const PinholeCamera& camera,
-               const CameraInfo& info) {
+CellFit fit_cell(const CellSums& sums, double u0, double v0, const PinholeCamera& camera,
+                 const CameraInfo& info) {
     const double n = sums.left(2, 2);
     const Eigen::Vector3d abc = sums.left.inverse() * sums.right;
     if (!abc.allFinite()) return {};
@@ -41,7 +47,46 @@ Plane fit_cell(const CellSums& sums, double u0, double v0, const PinholeCamera& 
                                  abc.x() * camera.cx + abc.y() * camera.cy + c);
     const double norm = normal.norm();
     if (!(norm > 1e-6)) return {};
-    return {-normal / norm, 1 / norm};
+    // A slope of 1/z is as uncertain as what readings scatter by allows, and tilts the plane by f d times
+    // that.
+    const double per_slope =
+        0.5 * (sums.left(0, 0) + sums.left(1, 1)) -
+        0.5 * (sums.left(0, 2) * sums.left(0, 2) + sums.left(1, 2) * sums.left(1, 2)) / n;
+    const double tilt = camera.fx / norm * std::sqrt(variance * n / ((n - 3) * per_slope));
+    return {{-normal / norm, 1 / norm}, tilt};
+}
+
+/// What a sample on the surface says.
+struct Hit {
+    double r = 0;  ///< distance, in sigmas
+    double weight = 0;
+    Twist j = Twist::Zero();  ///< of r, by the camera's small motion
+    Eigen::Vector3d normal;   ///< of the surface, camera frame
+    double sigma = 0;         ///< metres
+    Eigen::Vector2d pixel;    ///< in the keyframe
+};
+
+/// Nothing beside the surface; `visible` counts those that fall on a cell of it.
+std::optional<Hit> hit(const PlanarPatches& patches, const PinholeCamera& camera, const DepthSample& sample,
+                       const Pose& camera_from_keyframe, const Pose& keyframe_from_camera, double gate_m,
+                       double weight, int& visible) {
+    Hit hit;
+    const Eigen::Vector3d p = keyframe_from_camera * sample.point;
+    if (!(p.z() > 0.05)) return std::nullopt;
+    hit.pixel = camera.project(p);
+    const Plane* plane = patches.at(hit.pixel);
+    if (!plane) return std::nullopt;
+    ++visible;
+    const double distance = plane->signed_distance(p);
+    hit.normal = camera_from_keyframe.linear() * plane->normal;
+    // Depth noise moves the point along its ray; both views have it.
+    const double slant = std::abs(hit.normal.dot(sample.point)) / sample.point.z();
+    hit.sigma = 1.4 * sample.sigma * std::max(slant, 0.2);
+    if (!(std::abs(distance) < std::max(gate_m, 3 * hit.sigma)) || slant < 0.1) return std::nullopt;
+    hit.r = distance / hit.sigma;
+    hit.j << -hit.normal / hit.sigma, hit.normal.cross(sample.point) / hit.sigma;
+    hit.weight = weight / (1 + hit.r * hit.r / 4);
+    return hit;
 }
 
 }  // namespace
@@ -68,7 +113,10 @@ std::vector<DepthSample> without_shutter(std::vector<DepthSample> samples, const
 
 PlanarPatches::PlanarPatches(const DepthImage& depth, const PinholeCamera& camera, const CameraInfo& info,
                              int cell_px, const Twist& over_readout)
-    : camera_(camera), cell_px_(cell_px), planes_(depth.width / cell_px, depth.height / cell_px) {
+    : camera_(camera),
+      cell_px_(cell_px),
+      planes_(depth.width / cell_px, depth.height / cell_px),
+      tilts_(planes_.width, planes_.height) {
     const int needed = cell_px * cell_px / 4 * 3 / 4;  // of every other pixel of every other row
     const double centre = 0.5 * cell_px;
     for (int row = 0; row < planes_.height; ++row) {
@@ -95,8 +143,11 @@ PlanarPatches::PlanarPatches(const DepthImage& depth, const PinholeCamera& camer
             if (sums.left(2, 2) < needed) continue;
             sums.left.triangularView<Eigen::StrictlyLower>() = sums.left.transpose();
             Plane& plane = planes_(column, row);
-            plane = fit_cell(sums, column * cell_px + centre, row * cell_px + centre, camera, info);
+            const CellFit fit =
+                fit_cell(sums, column * cell_px + centre, row * cell_px + centre, camera, info);
+            plane = fit.plane;
             if (!(plane.d > 0)) continue;
+            tilts_(column, row) = static_cast<float>(fit.tilt);
             ++count_;
             const double late = row_share(camera, row * cell_px + centre);
             plane = pose_from_twist(-late * over_readout) * plane;
@@ -123,18 +174,28 @@ void PlanarPatches::lay_on(std::span<const PlanarRegion> regions, const DepthNoi
                 nearest = off;
                 on = &region;
             }
-            if (on) plane = on->plane;
+            if (!on) continue;
+            plane = on->plane;
+            tilts_(column, row) = 0;
         }
     }
 }
 
+Eigen::Vector2i PlanarPatches::cell_of(const Eigen::Vector2d& pixel) const {
+    if (!(pixel.x() >= -0.5 && pixel.y() >= -0.5 && pixel.x() < 1e5 && pixel.y() < 1e5)) return {-1, -1};
+    return {nearest_whole<int>(pixel.x()) / cell_px_, nearest_whole<int>(pixel.y()) / cell_px_};
+}
+
 const Plane* PlanarPatches::at(const Eigen::Vector2d& pixel) const {
-    if (!(pixel.x() >= -0.5 && pixel.y() >= -0.5 && pixel.x() < 1e5 && pixel.y() < 1e5)) return nullptr;
-    const int column = nearest_whole<int>(pixel.x()) / cell_px_;
-    const int row = nearest_whole<int>(pixel.y()) / cell_px_;
-    if (!planes_.contains(column, row)) return nullptr;
-    const Plane& plane = planes_(column, row);
+    const Eigen::Vector2i cell = cell_of(pixel);
+    if (!planes_.contains(cell.x(), cell.y())) return nullptr;
+    const Plane& plane = planes_(cell.x(), cell.y());
     return plane.d > 0 ? &plane : nullptr;
+}
+
+double PlanarPatches::tilt(const Eigen::Vector2d& pixel) const {
+    const Eigen::Vector2i cell = cell_of(pixel);
+    return static_cast<double>(tilts_(cell.x(), cell.y()));
 }
 
 PatchMatch match_patches(const PlanarPatches& patches, const PinholeCamera& camera,
@@ -146,26 +207,14 @@ PatchMatch match_patches(const PlanarPatches& patches, const PinholeCamera& came
     const Pose keyframe_from_camera = camera_from_keyframe.inverse();
     double squared = 0;
     for (const DepthSample& sample : samples) {
-        const Eigen::Vector3d p = keyframe_from_camera * sample.point;
-        if (!(p.z() > 0.05)) continue;
-        const Plane* plane = patches.at(camera.project(p));
-        if (!plane) continue;
-        ++match.visible;
-        const double distance = plane->signed_distance(p);
-        const Eigen::Vector3d normal = camera_from_keyframe.linear() * plane->normal;
-        // Depth noise moves the point along its ray; both views have it.
-        const double slant = std::abs(normal.dot(sample.point)) / sample.point.z();
-        const double sigma = 1.4 * sample.sigma * std::max(slant, 0.2);
-        if (!(std::abs(distance) < std::max(gate_m, 3 * sigma)) || slant < 0.1) continue;
-        const double r = distance / sigma;
-        Twist j;
-        j << -normal / sigma, normal.cross(sample.point) / sigma;
-        const double w = weight / (1 + r * r / 4);
+        const std::optional<Hit> found = hit(patches, camera, sample, camera_from_keyframe,
+                                             keyframe_from_camera, gate_m, weight, match.visible);
+        if (!found) continue;
         const Eigen::Vector2d pixel = camera.project(sample.point);
         QuadraticTerm& tile = tiles[static_cast<std::size_t>(tile_of(camera, pixel.x(), pixel.y()))];
-        tile.information.selfadjointView<Eigen::Upper>().rankUpdate(j, w);
-        tile.gradient += (w * r) * j;
-        squared += r * r;
+        tile.information.selfadjointView<Eigen::Upper>().rankUpdate(found->j, found->weight);
+        tile.gradient += (found->weight * found->r) * found->j;
+        squared += found->r * found->r;
         ++match.matched;
     }
     for (QuadraticTerm& tile : tiles) {
@@ -178,6 +227,29 @@ PatchMatch match_patches(const PlanarPatches& patches, const PinholeCamera& came
     }
     if (match.matched > 0) match.residual = std::sqrt(squared / match.matched);
     return match;
+}
+
+Matrix6d information_of_tilts(const PlanarPatches& patches, const PinholeCamera& camera,
+                              const std::vector<DepthSample>& samples, const Pose& camera_from_keyframe,
+                              double gate_m, double weight) {
+    Matrix6d information = Matrix6d::Zero();
+    const Pose keyframe_from_camera = camera_from_keyframe.inverse();
+    int visible = 0;
+    for (const DepthSample& sample : samples) {
+        const std::optional<Hit> found =
+            hit(patches, camera, sample, camera_from_keyframe, keyframe_from_camera, gate_m, weight, visible);
+        if (!found) continue;
+        const double tilt = patches.tilt(found->pixel);
+        if (tilt == 0) continue;
+        const Eigen::Vector3d across = found->normal.unitOrthogonal();
+        for (const Eigen::Vector3d& tilted : {across, Eigen::Vector3d(found->normal.cross(across))}) {
+            Twist j;
+            j << -tilted / found->sigma, tilted.cross(sample.point) / found->sigma;
+            information.selfadjointView<Eigen::Upper>().rankUpdate(j, found->weight * tilt * tilt);
+        }
+    }
+    information.triangularView<Eigen::StrictlyLower>() = information.transpose();
+    return information;
 }
 
 }  // namespace planemap::odometry

@@ -46,11 +46,18 @@ class PlanarPatches {
     int cells() const { return count_; }
     /// The plane at a pixel (camera frame), or nullptr.
     const Plane* at(const Eigen::Vector2d& pixel) const;
+    /// By how much noise tilts the plane at a pixel, radians about either axis, by what its readings scatter;
+    /// 0 where it is a region's. Precondition: there is one.
+    double tilt(const Eigen::Vector2d& pixel) const;
 
   private:
+    /// The cell of a pixel, (-1, -1) outside.
+    Eigen::Vector2i cell_of(const Eigen::Vector2d& pixel) const;
+
     PinholeCamera camera_;
     int cell_px_ = 1, count_ = 0;
     Image<Plane> planes_;  ///< of the cells; d = 0: none
+    Image<float> tilts_;
 };
 
 struct PatchMatch {
@@ -68,5 +75,12 @@ struct PatchMatch {
 PatchMatch match_patches(const PlanarPatches& patches, const PinholeCamera& camera,
                          const std::vector<DepthSample>& samples, const Pose& camera_from_keyframe,
                          double gate_m, double weight);
+
+/// What of the information of match_patches(), with the same arguments, is owed to the tilts of cells that
+/// are noise: a bare wall of tilted cells seems to hold a camera that slides along it. To be expected, so it
+/// may be more than there is in a direction.
+Matrix6d information_of_tilts(const PlanarPatches& patches, const PinholeCamera& camera,
+                              const std::vector<DepthSample>& samples, const Pose& camera_from_keyframe,
+                              double gate_m, double weight);
 
 }  // namespace planemap::odometry

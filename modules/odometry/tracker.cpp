@@ -58,6 +58,19 @@ bool is_supported(const OdometryOptions& options, const AlignmentResult& result,
            result.inliers >= options.min_inlier_share * static_cast<double>(terms);
 }
 
+/// What is left of the data's information without what noise pretends: less in no direction than the guess
+/// says. Directions are compared in the guess's sigmas.
+Matrix6d without_pretended(const Matrix6d& information, const Matrix6d& pretended, const Guess& guess) {
+    const Twist in_sigmas = guess.information.diagonal().cwiseSqrt();
+    const Twist sigmas = in_sigmas.cwiseInverse();
+    const Matrix6d data =
+        sigmas.asDiagonal() * (information - guess.information - pretended) * sigmas.asDiagonal();
+    const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(data);
+    const Matrix6d half = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
+    const Matrix6d scaled = in_sigmas.asDiagonal() * half;
+    return guess.information + scaled * scaled.transpose();
+}
+
 /// True when the data say too little about some direction compared with the guess.
 bool is_degenerate(const Matrix6d& information, const Guess& guess) {
     const Twist scale = guess.information.diagonal().cwiseSqrt().cwiseInverse();
@@ -261,6 +274,11 @@ std::optional<Track> track_surface(const OdometryOptions& options, const LocalKe
     if (match.matched < needed || match.matched < 0.7 * match.visible) return std::nullopt;
     track.tried = match.visible;
     track.inliers = match.matched;
+    const Matrix6d of_tilts =
+        information_of_tilts(keyframe.patches, frame.camera->color,
+                             without_shutter(frame.samples, frame.readout_s * guess.velocity_at(pose)), pose,
+                             options.surface_gate_m, options.surface_weight);
+    track.alignment.information = without_pretended(track.alignment.information, of_tilts, guess);
     track.degenerate = is_degenerate(track.alignment.information, guess);
     track.guess_information = guess.information;
     return track;

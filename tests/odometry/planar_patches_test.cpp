@@ -87,7 +87,13 @@ TEST(PlanarPatches, CellsOnARegionTakeItsPlane) {
         return match_patches(patches, camera.color, samples, Pose::Identity(), 0.04, 1)
             .term.information(0, 0);
     };
+    const auto pretended = [&] {
+        return information_of_tilts(patches, camera.color, samples, Pose::Identity(), 0.04, 1);
+    };
     const double tilted = hold_along_wall();
+    // All that holds it there is noise, and known to be.
+    EXPECT_NEAR(pretended()(0, 0) / tilted, 1, 0.3);
+    EXPECT_LT(pretended()(2, 2), 0.1 * tilted) << "across the wall it is held";
     PlanarRegion wall;
     wall.plane = {{0, 0, -1}, 2};
     wall.outline.rings = {{{-3, -3}, {3, -3}, {3, 3}, {-3, 3}}};
@@ -95,6 +101,7 @@ TEST(PlanarPatches, CellsOnARegionTakeItsPlane) {
     wall.box.half_extents = {3, 3, 0};
     patches.lay_on(std::vector{wall}, camera.noise);
     EXPECT_LT(hold_along_wall(), 0.2 * tilted);
+    EXPECT_LT(pretended()(0, 0), 0.2 * tilted);
     const Plane* cell = patches.at({160, 120});
     ASSERT_TRUE(cell);
     EXPECT_EQ(cell->d, 2);
