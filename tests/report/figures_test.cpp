@@ -43,5 +43,17 @@ TEST(Figures, TextHasItsUnit) {
     EXPECT_EQ(figure_text(43, FigureKind::kCount), "43");
 }
 
+TEST(Figures, AStageThatNeverRanTookNoTimeThatIsKnown) {
+    const Json report = {{"stages_ms", {{"octomap", {{"median", 0.0}, {"count", 0}}}}}};
+    EXPECT_FALSE(value_of(report, named(figures_of(report), "/stages_ms/octomap/median")));
+}
+
+TEST(Figures, SharesChangeByPoints) {
+    EXPECT_EQ(change_text(0.8, 0.825, FigureKind::kShare), "+2.5 points");
+    EXPECT_EQ(change_text(8, 6, FigureKind::kCount), "-25.0 %");
+    EXPECT_EQ(change_text(0, 6, FigureKind::kCount), "");
+    EXPECT_EQ(change_text(std::nullopt, 6, FigureKind::kShare), "");
+}
+
 }  // namespace
 }  // namespace planemap

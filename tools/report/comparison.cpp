@@ -37,7 +37,8 @@ void add_figures(const Json& a, const Json& b, Json& comparison) {
                               {"a", number(of_a)},
                               {"b", number(of_b)},
                               {"a_text", figure_text(of_a, figure.kind)},
-                              {"b_text", figure_text(of_b, figure.kind)}});
+                              {"b_text", figure_text(of_b, figure.kind)},
+                              {"change_text", change_text(of_a, of_b, figure.kind)}});
     }
     comparison["figures"] = differ;
     comparison["figures_alike"] = alike;

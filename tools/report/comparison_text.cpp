@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <cmath>
-
 #include "report/comparison.hpp"
 #include "run/report_text.hpp"
 
@@ -16,13 +14,6 @@ std::string row(const std::vector<std::string>& cells) {
     return text + "\n";
 }
 
-/// "+12.5 %"; empty where either is not known, or A is zero.
-std::string change(const Json& figure) {
-    if (!figure.at("a").is_number() || !figure.at("b").is_number()) return "";
-    const double a = figure.at("a").get<double>(), b = figure.at("b").get<double>();
-    return a == 0 ? "" : format("%+.1f %%", 100 * (b - a) / std::abs(a));
-}
-
 void add_figures(const Json& comparison, std::string& out) {
     out += "## Figures\n\n";
     if (comparison.at("figures").empty()) {
@@ -32,7 +23,7 @@ void add_figures(const Json& comparison, std::string& out) {
     out += "| figure | A | B | change |\n| --- | ---: | ---: | ---: |\n";
     for (const Json& figure : comparison.at("figures"))
         out += row({figure.at("name").get<std::string>(), figure.at("a_text").get<std::string>(),
-                    figure.at("b_text").get<std::string>(), change(figure)});
+                    figure.at("b_text").get<std::string>(), figure.at("change_text").get<std::string>()});
     out += "\n" + comparison.at("figures_alike").dump() + " more are the same in both.\n\n";
 }
 

@@ -61,6 +61,9 @@ std::vector<Figure> figures_of(const Json& report) {
 std::optional<double> value_of(const Json& report, const Figure& figure) {
     const Json::json_pointer pointer(figure.pointer);
     if (!report.contains(pointer) || !report.at(pointer).is_number()) return std::nullopt;
+    // What never happened took no time: no figure.
+    const Json& beside = report.at(pointer.parent_pointer());
+    if (beside.is_object() && beside.value("count", Json(1)) == 0) return std::nullopt;
     const double value = report.at(pointer).get<double>();
     return std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
@@ -90,6 +93,12 @@ std::string figure_text(const std::optional<double>& value, Kind kind) {
             break;
     }
     return format("%.0f", *value);
+}
+
+std::string change_text(const std::optional<double>& a, const std::optional<double>& b, Kind kind) {
+    if (!a || !b) return "";
+    if (kind == Kind::kShare) return format("%+.1f points", 100 * (*b - *a));
+    return *a == 0 ? "" : format("%+.1f %%", 100 * (*b - *a) / std::abs(*a));
 }
 
 }  // namespace planemap

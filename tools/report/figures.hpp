@@ -38,4 +38,7 @@ std::optional<double> value_of(const nlohmann::ordered_json& report, const Figur
 /// "7.5 kB", "86.6 %"; "-" for nothing.
 std::string figure_text(const std::optional<double>& value, FigureKind kind);
 
+/// From a to b: "+12.5 %", of shares "+1.2 points"; empty where either is not known, or a is zero.
+std::string change_text(const std::optional<double>& a, const std::optional<double>& b, FigureKind kind);
+
 }  // namespace planemap
