@@ -51,6 +51,10 @@ function(planemap_use_precompiled target name)
     endif()
 endfunction()
 
+# What files share is read once, and names that two files of a library both use are errors, even of their own: for builds
+# that are checked and thrown away. A file with options of its own stays alone.
+option(PLANEMAP_UNITY "Compile the files of a library a dozen at a time" OFF)
+
 # planemap_library(NAME SOURCES... [PUBLIC libs...] [PRIVATE libs...]): a static library. Those of modules/ are installed;
 # to other projects planemap_<module> is planemap::<module>.
 function(planemap_library name)
@@ -59,6 +63,7 @@ function(planemap_library name)
     target_include_directories(${name} PUBLIC $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}/modules>)
     target_link_libraries(${name} PUBLIC ${ARG_PUBLIC} PRIVATE $<BUILD_INTERFACE:planemap_options> ${ARG_PRIVATE})
     planemap_use_precompiled(${name} planemap_precompiled)
+    set_target_properties(${name} PROPERTIES UNITY_BUILD ${PLANEMAP_UNITY} UNITY_BUILD_BATCH_SIZE 12)
     cmake_path(IS_PREFIX planemap_MODULES_DIR ${CMAKE_CURRENT_SOURCE_DIR} is_of_a_module)
     if(is_of_a_module)
         planemap_install_library(${name})

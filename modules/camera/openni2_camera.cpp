@@ -14,7 +14,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kFirstFrame = 3000ms;
+constexpr auto kFirstFrameWait = 3000ms;
 
 std::string serial_of(const openni::Device& device) {
     char text[128] = {};
@@ -208,12 +208,12 @@ void OpenNi2Camera::start() {
 
 /// The first frames are not used: the device may change how it takes them meanwhile.
 void OpenNi2Camera::wait_for_depth() {
-    const auto until = std::chrono::steady_clock::now() + kFirstFrame;
+    const auto until = std::chrono::steady_clock::now() + kFirstFrameWait;
     while (!frames_.wait_for_depth(50ms)) {
         if (unplugged_) throw std::runtime_error(name_ + ": was unplugged while it started");
         if (std::chrono::steady_clock::now() > until)
             throw std::runtime_error(name_ + ": no depth came within " +
-                                     std::to_string(kFirstFrame.count() / 1000) + " s of its start");
+                                     std::to_string(kFirstFrameWait.count() / 1000) + " s of its start");
     }
 }
 

@@ -416,7 +416,7 @@ Eigen::Matrix3d camera_from_accelerometer(const std::filesystem::path& camera_fi
         FieldErrors errors(camera_file.string());
         const Reader reader(document, "", errors);
         if (reader.has(kAccelerometer)) {
-            const Eigen::Matrix3d rotation = read_rotation(reader.object(kAccelerometer, true));
+            Eigen::Matrix3d rotation = read_rotation(reader.object(kAccelerometer, true));
             errors.throw_if_any();
             return rotation;
         }

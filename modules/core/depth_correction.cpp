@@ -43,7 +43,7 @@ std::uint16_t corrected(std::uint16_t raw, float offset) {
     if (!is_valid_depth(raw)) return raw;
     const float z = static_cast<float>(raw) / (1 + static_cast<float>(raw) * offset);
     if (!(z >= 0.5f && z < 65534.5f)) return 0;
-    return static_cast<std::uint16_t>(z + 0.5f);
+    return static_cast<std::uint16_t>(z + 0.5f);  // NOLINT(bugprone-incorrect-roundings): exact from 0.5 on
 }
 
 }  // namespace

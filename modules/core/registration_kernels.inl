@@ -31,10 +31,12 @@ void project(const ReadingsRow& row, const LandedRow& landed) {
 void address(const LandedRow& landed, int width, int color_width, int* __restrict index,
              std::uint16_t* __restrict depth) {
     const float *const x = landed.x, *const y = landed.y, *const z = landed.z;
+    // NOLINTBEGIN(bugprone-incorrect-roundings): depth is at least 1, where adding a half is exact
     for (int u = 0; u < width; ++u) {
         index[u] = static_cast<int>(y[u]) * color_width + static_cast<int>(x[u]);
         depth[u] = static_cast<std::uint16_t>(static_cast<int>(z[u] + 0.5f));
     }
+    // NOLINTEND(bugprone-incorrect-roundings)
 }
 
 }  // namespace

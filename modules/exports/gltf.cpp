@@ -17,12 +17,12 @@ constexpr std::uint32_t kMagic = 0x46546C67, kVersion = 2, kJsonChunk = 0x4E4F53
 constexpr int kFloat = 5126, kUint32 = 5125, kArrayBuffer = 34962, kElementArrayBuffer = 34963,
               kLineStrip = 3;
 
-void put(std::string& bytes, std::uint32_t value) {
+void put_word(std::string& bytes, std::uint32_t value) {
     for (int shift = 0; shift < 32; shift += 8) bytes.push_back(static_cast<char>(value >> shift & 0xff));
 }
 
-void put(std::string& bytes, const Eigen::Vector3f& v) {
-    for (const float value : {v.x(), v.y(), v.z()}) put(bytes, std::bit_cast<std::uint32_t>(value));
+void put_vector(std::string& bytes, const Eigen::Vector3f& v) {
+    for (const float value : {v.x(), v.y(), v.z()}) put_word(bytes, std::bit_cast<std::uint32_t>(value));
 }
 
 Json json_of(const Eigen::Vector3f& v) {
@@ -71,13 +71,13 @@ class Scene {
         accessors.push_back(
             accessor(2, indices.size(), kUint32, static_cast<int>(3 * mesh.triangles.size()), "SCALAR"));
         for (const Eigen::Vector3f& v : mesh.vertices) {
-            put(positions, v);
-            put(normals, plane.normal.normalized().eval());
+            put_vector(positions, v);
+            put_vector(normals, plane.normal.normalized().eval());
             low = low.cwiseMin(v);
             high = high.cwiseMax(v);
         }
         for (const auto& triangle : mesh.triangles)
-            for (const int i : triangle) put(indices, static_cast<std::uint32_t>(i));
+            for (const int i : triangle) put_word(indices, static_cast<std::uint32_t>(i));
         accessors[static_cast<std::size_t>(first_accessor)]["min"] = json_of(low);
         accessors[static_cast<std::size_t>(first_accessor)]["max"] = json_of(high);
 
@@ -102,7 +102,7 @@ class Scene {
         accessors.push_back(accessor(0, positions.size(), kFloat, static_cast<int>(way.size()), "VEC3"));
         for (const Eigen::Vector3d& p : way) {
             const Eigen::Vector3f v = p.cast<float>();
-            put(positions, v);
+            put_vector(positions, v);
             low = low.cwiseMin(v);
             high = high.cwiseMax(v);
         }
@@ -137,11 +137,11 @@ class Scene {
         const std::size_t total = 20 + text.size() + (binary.empty() ? 0 : 8 + binary.size());
         for (const std::uint32_t value : {kMagic, kVersion, static_cast<std::uint32_t>(total),
                                           static_cast<std::uint32_t>(text.size()), kJsonChunk})
-            put(bytes, value);
+            put_word(bytes, value);
         bytes += text;
         if (!binary.empty()) {
-            put(bytes, static_cast<std::uint32_t>(binary.size()));
-            put(bytes, kBinaryChunk);
+            put_word(bytes, static_cast<std::uint32_t>(binary.size()));
+            put_word(bytes, kBinaryChunk);
             bytes += binary;
         }
         return bytes;

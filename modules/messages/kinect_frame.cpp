@@ -24,20 +24,20 @@ constexpr std::size_t kMostOfZlib = 1032;  // times that a zlib stream can grow
 constexpr std::int64_t kStampDistanceUs = 1000000;
 constexpr std::uint16_t kNoReading = 2047, kFarthestMm = 10000;
 
-[[noreturn]] void fail(const std::string& what) {
+[[noreturn]] void refuse(const std::string& what) {
     throw MessageError("kinect frame: " + what);
 }
 
 void require_size(int width, int height, const char* which) {
     if (width >= 1 && height >= 1 && width <= kMaxSide && height <= kMaxSide) return;
-    fail(std::string(which) + " image of " + std::to_string(width) + "x" + std::to_string(height) +
-         " pixels; sides are 1 to " + std::to_string(kMaxSide));
+    refuse(std::string(which) + " image of " + std::to_string(width) + "x" + std::to_string(height) +
+           " pixels; sides are 1 to " + std::to_string(kMaxSide));
 }
 
 void require_bytes(std::size_t bytes, std::size_t expected, const char* which) {
     if (bytes == expected) return;
-    fail(std::string(which) + " image of " + std::to_string(bytes) + " bytes instead of " +
-         std::to_string(expected));
+    refuse(std::string(which) + " image of " + std::to_string(bytes) + " bytes instead of " +
+           std::to_string(expected));
 }
 
 std::int64_t stamp(std::int64_t image, std::int64_t frame) {
@@ -76,14 +76,14 @@ void require_depth(const kinect::depth_msg_t& depth) {
     require_size(depth.width, depth.height, "depth");
     const std::int8_t format = depth.depth_data_format, compression = depth.compression;
     if (format != Depth::DEPTH_11BIT && format != Depth::DEPTH_REGISTERED && format != Depth::DEPTH_MM)
-        fail("depth_data_format " + std::to_string(format) + " is not 11BIT (0), REGISTERED (4) or MM (5)");
+        refuse("depth_data_format " + std::to_string(format) + " is not 11BIT (0), REGISTERED (4) or MM (5)");
     if (compression != Depth::COMPRESSION_NONE && compression != Depth::COMPRESSION_ZLIB)
-        fail("compression " + std::to_string(compression) + " is not NONE (0) or ZLIB (1)");
+        refuse("compression " + std::to_string(compression) + " is not NONE (0) or ZLIB (1)");
     const std::size_t bytes =
         2 * static_cast<std::size_t>(depth.width) * static_cast<std::size_t>(depth.height);
     if (compression == Depth::COMPRESSION_ZLIB && bytes > kMostOfZlib * depth.depth_data.size())
-        fail("zipped depth of " + std::to_string(depth.depth_data.size()) + " bytes cannot hold " +
-             std::to_string(depth.width) + "x" + std::to_string(depth.height) + " pixels");
+        refuse("zipped depth of " + std::to_string(depth.depth_data.size()) + " bytes cannot hold " +
+               std::to_string(depth.width) + "x" + std::to_string(depth.height) + " pixels");
 }
 
 image_t depth_message(const kinect::depth_msg_t& depth, std::int64_t utime, std::int16_t& type) {
@@ -120,8 +120,8 @@ image_t color_message(const kinect::image_msg_t& image, std::int64_t utime) {
             return color_image_message(from_bayer(mosaic), utime, ColorEncoding::kRaw, 0);
         }
         default:
-            fail("image_data_format " + std::to_string(image.image_data_format) +
-                 " is not RGB (0), BAYER (1), RGB_JPEG (100) or NONE (101)");
+            refuse("image_data_format " + std::to_string(image.image_data_format) +
+                   " is not RGB (0), BAYER (1), RGB_JPEG (100) or NONE (101)");
     }
 }
 

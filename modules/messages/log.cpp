@@ -15,13 +15,13 @@ void append(std::string& out, T value) {
     for (std::size_t i = sizeof(T); i-- > 0;) out += static_cast<char>(value >> (8 * i) & 0xff);
 }
 
-[[noreturn]] void fail(const std::filesystem::path& file, const char* doing, int error) {
+[[noreturn]] void fail_at(const std::filesystem::path& file, const char* doing, int error) {
     throw std::runtime_error(file.string() + ": cannot " + doing + ": " + std::strerror(error));
 }
 
 std::FILE* opened(const std::filesystem::path& file) {
     std::FILE* handle = std::fopen(file.c_str(), "wb");
-    if (handle == nullptr) fail(file, "open", errno);
+    if (handle == nullptr) fail_at(file, "open", errno);
     return handle;
 }
 
@@ -131,7 +131,7 @@ void LogReader::add_gap(std::uint64_t begin, std::uint64_t end, const LogRecord*
 
 namespace {
 
-std::string seconds_text(std::int64_t utime, std::int64_t first) {
+std::string time_since(std::int64_t utime, std::int64_t first) {
     char text[40];
     std::snprintf(text, sizeof(text), "%.3f s",
                   (static_cast<double>(utime) - static_cast<double>(first)) * 1e-6);
@@ -151,8 +151,8 @@ std::string size_text(std::uint64_t bytes) {
 std::string gap_text(const LogGap& gap, std::int64_t first_utime) {
     std::string text = "bytes " + std::to_string(gap.at) + " to " + std::to_string(gap.at + gap.bytes) +
                        ", about " + count_text(gap.events, "event") + " lost";
-    if (gap.utime_before) text += ", after " + seconds_text(*gap.utime_before, first_utime);
-    if (gap.utime_after) text += ", before " + seconds_text(*gap.utime_after, first_utime);
+    if (gap.utime_before) text += ", after " + time_since(*gap.utime_before, first_utime);
+    if (gap.utime_after) text += ", before " + time_since(*gap.utime_after, first_utime);
     return text;
 }
 
@@ -198,12 +198,13 @@ LogWriter::LogWriter(const std::filesystem::path& file) : path_(file), file_(ope
 
 void LogWriter::write(const LogEvent& event) {
     const std::string bytes = encode_event(event);
-    if (std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size()) fail(path_, "write", errno);
+    if (std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size())
+        fail_at(path_, "write", errno);
 }
 
 void LogWriter::close() {
     std::FILE* file = file_.release();
-    if (file != nullptr && std::fclose(file) != 0) fail(path_, "write", errno);
+    if (file != nullptr && std::fclose(file) != 0) fail_at(path_, "write", errno);
 }
 
 }  // namespace planemap::messages

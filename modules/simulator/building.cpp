@@ -11,10 +11,11 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kWidth = 2.4, kHeight = 2.6;                                 // of the corridor
-constexpr double kLengthX = 34.4, kLengthY = 20.4;                            // of the outer walls
-constexpr double kMiddleX = kLengthX - kWidth, kMiddleY = kLengthY - kWidth;  // of the path: 2 (32 + 18) m
-constexpr double kSegment = 6;  // a wall's look changes about so often
+constexpr double kHallWidth = 2.4, kHallHeight = 2.6;  // of the corridor
+constexpr double kLengthX = 34.4, kLengthY = 20.4;     // of the outer walls
+constexpr double kMiddleX = kLengthX - kHallWidth,
+                 kMiddleY = kLengthY - kHallWidth;  // of the path: 2 (32 + 18) m
+constexpr double kSegment = 6;                      // a wall's look changes about so often
 
 /// One of the four legs, in the order that they are walked: counter-clockwise from above.
 struct Leg {
@@ -32,9 +33,9 @@ std::vector<Leg> legs() {
 }
 
 /// Numbers of one world, in the order that they are asked for.
-class Dice {
+class LegDice {
   public:
-    explicit Dice(std::uint64_t seed) : seed_(mix(seed, 53)) {}
+    explicit LegDice(std::uint64_t seed) : seed_(mix(seed, 53)) {}
     double roll(double low, double high) { return uniform(mix(seed_, count_++), low, high); }
     std::size_t pick(std::size_t count) { return mix(seed_, count_++) % count; }
 
@@ -45,16 +46,16 @@ class Dice {
 /// A piece of a leg's outer or inner wall from `from` to `to` along the leg, with a door or without, and
 /// posters.
 void add_wall_segment(WorldBuilder& building, const Leg& leg, bool outer, double from, double to,
-                      Dice& dice) {
+                      LegDice& dice) {
     constexpr Look kLooks[] = {kWhite, kYellow, kBlue, {Pattern::kBrick, {0.66f, 0.36f, 0.28f}}};
     const double width = to - from;
-    const Vector3d end = leg.corner + kHeight * kUp + (outer ? to : from) * leg.along;
+    const Vector3d end = leg.corner + kHallHeight * kUp + (outer ? to : from) * leg.along;
     building.add_panel(leg.name + (outer ? " outer wall" : " inner wall"),
-                       outer ? end : end + kWidth * leg.left(), outer ? Vector3d(-leg.along) : leg.along,
-                       kDown, width, kHeight, kLooks[dice.pick(4)]);
+                       outer ? end : end + kHallWidth * leg.left(), outer ? Vector3d(-leg.along) : leg.along,
+                       kDown, width, kHallHeight, kLooks[dice.pick(4)]);
     double left = dice.roll(0.2, 0.8);
     if (width > 3 && dice.pick(2) == 0) {
-        building.add_picture(left, kHeight - 2.05, 0.9, 2.05, dice.pick(2) == 0 ? kOak : kGrey);
+        building.add_picture(left, kHallHeight - 2.05, 0.9, 2.05, dice.pick(2) == 0 ? kOak : kGrey);
         left += 1.0 + dice.roll(0.2, 0.8);
     }
     while (left + 0.9 < width) {
@@ -64,9 +65,9 @@ void add_wall_segment(WorldBuilder& building, const Leg& leg, bool outer, double
     }
 }
 
-void add_walls(WorldBuilder& building, const Leg& leg, Dice& dice) {
+void add_walls(WorldBuilder& building, const Leg& leg, LegDice& dice) {
     for (const bool outer : {true, false}) {
-        const double from = outer ? 0 : kWidth, length = leg.length - 2 * from;
+        const double from = outer ? 0 : kHallWidth, length = leg.length - 2 * from;
         const int count = static_cast<int>(std::ceil(length / kSegment));
         for (int i = 0; i < count; ++i) {
             add_wall_segment(building, leg, outer, from + length * i / count, from + length * (i + 1) / count,
@@ -76,13 +77,14 @@ void add_walls(WorldBuilder& building, const Leg& leg, Dice& dice) {
 }
 
 /// Cupboards and shelves along both walls, so that depth alone shows how far one has walked.
-void add_furniture(WorldBuilder& building, const Leg& leg, Dice& dice) {
+void add_furniture(WorldBuilder& building, const Leg& leg, LegDice& dice) {
     constexpr double kDepth = 0.35;
     int count = 0;
-    for (double at = kWidth + dice.roll(0, 2); at < leg.length - kWidth - 1.2; at += dice.roll(2.5, 6.0)) {
+    for (double at = kHallWidth + dice.roll(0, 2); at < leg.length - kHallWidth - 1.2;
+         at += dice.roll(2.5, 6.0)) {
         const bool outer = dice.pick(2) == 0;
         const double width = dice.roll(0.5, 1.1), height = dice.roll(0.6, 1.9);
-        const Vector3d front = leg.corner + (outer ? kDepth : kWidth - kDepth) * leg.left();
+        const Vector3d front = leg.corner + (outer ? kDepth : kHallWidth - kDepth) * leg.left();
         const WorldBuilder::Place place{front + (outer ? at + width : at) * leg.along,
                                         outer ? Vector3d(-leg.along) : leg.along};
         const Look& look = dice.pick(2) == 0 ? kBeech : kGrey;
@@ -94,14 +96,16 @@ void add_furniture(WorldBuilder& building, const Leg& leg, Dice& dice) {
 /// Floor and ceiling of a leg; the corners belong to the long legs.
 void add_floor(WorldBuilder& building, const Leg& leg) {
     const bool level = std::abs(leg.along.x()) > 0.5;
-    const double skip = level ? 0 : kWidth, length = leg.length - 2 * skip;
+    const double skip = level ? 0 : kHallWidth, length = leg.length - 2 * skip;
     const int count = static_cast<int>(std::ceil(length / kSegment));
     for (int i = 0; i < count; ++i) {
         const Vector3d a = leg.corner + (skip + length * i / count) * leg.along;
-        const Vector3d b = leg.corner + (skip + length * (i + 1) / count) * leg.along + kWidth * leg.left();
+        const Vector3d b =
+            leg.corner + (skip + length * (i + 1) / count) * leg.along + kHallWidth * leg.left();
         const Vector3d low = a.cwiseMin(b), size = (a - b).cwiseAbs();
         building.add_panel("floor", low + size.y() * kNorth, kEast, kSouth, size.x(), size.y(), kFloorTiles);
-        building.add_panel("ceiling", low + kHeight * kUp, kEast, kNorth, size.x(), size.y(), kCeilingBoards);
+        building.add_panel("ceiling", low + kHallHeight * kUp, kEast, kNorth, size.x(), size.y(),
+                           kCeilingBoards);
     }
 }
 
@@ -112,7 +116,7 @@ Vector3d on_path(double metres) {
     metres = std::fmod(metres, 2 * (kMiddleX + kMiddleY));
     std::size_t i = 0;
     for (; i < 3 && metres > sides[i]; ++i) metres -= sides[i];
-    const Vector3d start = all[i].corner + 0.5 * kWidth * (all[i].along + all[i].left());
+    const Vector3d start = all[i].corner + 0.5 * kHallWidth * (all[i].along + all[i].left());
     return start + metres * all[i].along;
 }
 
@@ -135,7 +139,7 @@ std::vector<Waypoint> building_tour() {
 
 World make_building(std::uint64_t seed, double texel_scale) {
     WorldBuilder building("building", seed, texel_scale);
-    Dice dice(seed);
+    LegDice dice(seed);
     for (const Leg& leg : legs()) {
         add_walls(building, leg, dice);
         add_furniture(building, leg, dice);
@@ -147,7 +151,7 @@ World make_building(std::uint64_t seed, double texel_scale) {
         world.lamps.push_back({on_path(i * 2 * (kMiddleX + kMiddleY) / kLamps) + 2.4 * kUp, 0.8});
     world.tour = building_tour();
     world.free_from = {0.6, 0.6, 0.4};
-    world.free_to = {kLengthX - 0.6, kWidth - 0.6, 2.2};
+    world.free_to = {kLengthX - 0.6, kHallWidth - 0.6, 2.2};
     return std::move(world);
 }
 

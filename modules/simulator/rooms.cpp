@@ -14,8 +14,8 @@ namespace {
 
 constexpr int kRoomsASide = 10;
 constexpr double kPitch = 4.6, kThickness = 0.12;  // from room to room, of walls
-constexpr double kWidth = kPitch - kThickness, kCorridor = 2.0, kCorridorZ = 2.4;
-constexpr double kDoorWidth = 0.95, kDoorZ = 2.05, kLength = kRoomsASide * kPitch;
+constexpr double kRoomWidth = kPitch - kThickness, kCorridor = 2.0, kPassageZ = 2.4;
+constexpr double kDoorWidth = 0.95, kRoomDoorZ = 2.05, kLength = kRoomsASide * kPitch;
 
 /// A room in coordinates of one who stands in its door: from the door wall's left end to the right, forward,
 /// and up.
@@ -46,10 +46,10 @@ std::vector<Room> rooms_of(std::uint64_t seed) {
         room.right = north ? kEast : kWest;
         room.forward = north ? kNorth : kSouth;
         room.origin =
-            north ? Vector3d(west, kCorridor + kThickness, 0) : Vector3d(west + kWidth, -kThickness, 0);
+            north ? Vector3d(west, kCorridor + kThickness, 0) : Vector3d(west + kRoomWidth, -kThickness, 0);
         room.depth = kDepths[(i + i / 3) % 3];
         room.height = kHeights[(2 * i + i / 4) % 3];
-        room.door = room.roll(1, 1.3, kWidth - kDoorWidth - 1.3);
+        room.door = room.roll(1, 1.3, kRoomWidth - kDoorWidth - 1.3);
         rooms.push_back(room);
     }
     return rooms;
@@ -74,37 +74,38 @@ void hang_posters(WorldBuilder& builder, const Room& room, double width, std::ui
 void add_shell(WorldBuilder& builder, const Room& room) {
     const auto& [name, origin, right, forward, depth, height, door, seed] = room;
     const double door_end = door + kDoorWidth;
-    builder.add_panel("floor", room.at(0, depth, 0), right, -forward, kWidth, depth, kFloorTiles);
+    builder.add_panel("floor", room.at(0, depth, 0), right, -forward, kRoomWidth, depth, kFloorTiles);
     builder.add_panel("floor", room.at(door, 0, 0), right, -forward, kDoorWidth, kThickness, kOak);
-    builder.add_panel(name + "ceiling", room.at(0, 0, height), right, forward, kWidth, depth, kCeilingBoards);
-    builder.add_panel(name + "back wall", room.at(0, depth, height), right, kDown, kWidth, height,
+    builder.add_panel(name + "ceiling", room.at(0, 0, height), right, forward, kRoomWidth, depth,
+                      kCeilingBoards);
+    builder.add_panel(name + "back wall", room.at(0, depth, height), right, kDown, kRoomWidth, height,
                       wall_look(room, 2));
-    hang_posters(builder, room, kWidth, 100);
+    hang_posters(builder, room, kRoomWidth, 100);
     builder.add_panel(name + "left wall", room.at(0, 0, height), forward, kDown, depth, height,
                       wall_look(room, 3));
     hang_posters(builder, room, depth, 200);
-    builder.add_panel(name + "right wall", room.at(kWidth, depth, height), -forward, kDown, depth, height,
+    builder.add_panel(name + "right wall", room.at(kRoomWidth, depth, height), -forward, kDown, depth, height,
                       wall_look(room, 4));
     hang_posters(builder, room, depth, 300);
-    const Hole hole{kWidth - door_end, height - kDoorZ, kWidth - door, height};
-    builder.add_panel(name + "door wall", room.at(kWidth, 0, height), -right, kDown, kWidth, height, kWhite,
-                      {&hole, 1});
-    builder.add_panel(name + "left jamb", room.at(door, -kThickness, kDoorZ), forward, kDown, kThickness,
-                      kDoorZ, kOak);
-    builder.add_panel(name + "right jamb", room.at(door_end, 0, kDoorZ), -forward, kDown, kThickness, kDoorZ,
-                      kOak);
-    builder.add_panel(name + "lintel", room.at(door, -kThickness, kDoorZ), right, forward, kDoorWidth,
+    const Hole hole{kRoomWidth - door_end, height - kRoomDoorZ, kRoomWidth - door, height};
+    builder.add_panel(name + "door wall", room.at(kRoomWidth, 0, height), -right, kDown, kRoomWidth, height,
+                      kWhite, {&hole, 1});
+    builder.add_panel(name + "left jamb", room.at(door, -kThickness, kRoomDoorZ), forward, kDown, kThickness,
+                      kRoomDoorZ, kOak);
+    builder.add_panel(name + "right jamb", room.at(door_end, 0, kRoomDoorZ), -forward, kDown, kThickness,
+                      kRoomDoorZ, kOak);
+    builder.add_panel(name + "lintel", room.at(door, -kThickness, kRoomDoorZ), right, forward, kDoorWidth,
                       kThickness, kOak);
     const double opened = radians(100);
     builder.add_box(name + "door",
                     {room.at(door, 0.02, 0.01), std::cos(opened) * right + std::sin(opened) * forward},
-                    {kDoorWidth, 0.04, kDoorZ - 0.02}, kBeech, kBeech, {});
-    builder.world().lamps.push_back({room.at(0.5 * kWidth, 0.5 * depth, height - 0.2), 1.1});
+                    {kDoorWidth, 0.04, kRoomDoorZ - 0.02}, kBeech, kBeech, {});
+    builder.world().lamps.push_back({room.at(0.5 * kRoomWidth, 0.5 * depth, height - 0.2), 1.1});
 }
 
 /// A cupboard at the back wall, a table with a carton at one side, a low shelf at the other.
 void add_furniture(WorldBuilder& builder, const Room& room) {
-    const double width = room.roll(11, 0.7, 1.2), left = room.roll(12, 0.3, kWidth - 0.3 - width);
+    const double width = room.roll(11, 0.7, 1.2), left = room.roll(12, 0.3, kRoomWidth - 0.3 - width);
     const Look& cupboard = mix(room.seed, 13) % 2 == 0 ? kBeech : kGrey;
     builder.add_box(room.name + "cupboard", {room.at(left, room.depth - 0.42, 0), room.right},
                     {width, 0.42, room.roll(14, 1.0, 1.95)}, cupboard,
@@ -114,7 +115,7 @@ void add_furniture(WorldBuilder& builder, const Room& room) {
     // right.
     const auto at_side = [&](bool is_left, double from, double length, double reach, double z) {
         return is_left ? WorldBuilder::Place{room.at(reach, from, z), room.forward}
-                       : WorldBuilder::Place{room.at(kWidth - reach, from + length, z), -room.forward};
+                       : WorldBuilder::Place{room.at(kRoomWidth - reach, from + length, z), -room.forward};
     };
     const double from = room.roll(17, 1.1, 1.5), top = room.roll(18, 0.70, 0.78);
     builder.add_box(room.name + "table", at_side(table_left, from, 1.4, 0.7, top - 0.03), {1.4, 0.7, 0.03},
@@ -130,15 +131,15 @@ void add_furniture(WorldBuilder& builder, const Room& room) {
 void add_corridor(WorldBuilder& builder, const std::vector<Room>& rooms) {
     std::vector<Hole> north, south;
     for (const Room& room : rooms) {
-        const double from = room.door_x() - 0.5 * kDoorWidth, top = kCorridorZ - kDoorZ;
+        const double from = room.door_x() - 0.5 * kDoorWidth, top = kPassageZ - kRoomDoorZ;
         if (room.right.x() > 0) {
-            north.push_back({from, top, from + kDoorWidth, kCorridorZ});
+            north.push_back({from, top, from + kDoorWidth, kPassageZ});
         } else {
-            south.push_back({kLength - from - kDoorWidth, top, kLength - from, kCorridorZ});
+            south.push_back({kLength - from - kDoorWidth, top, kLength - from, kPassageZ});
         }
     }
     builder.add_panel("floor", {0, kCorridor, 0}, kEast, kSouth, kLength, kCorridor, kFloorTiles);
-    builder.add_panel("corridor ceiling", {0, 0, kCorridorZ}, kEast, kNorth, kLength, kCorridor,
+    builder.add_panel("corridor ceiling", {0, 0, kPassageZ}, kEast, kNorth, kLength, kCorridor,
                       kCeilingBoards);
     const auto decorate = [&](const std::vector<Hole>& doors, std::uint64_t k) {
         for (std::size_t i = 0; i < doors.size(); ++i) {
@@ -146,16 +147,16 @@ void add_corridor(WorldBuilder& builder, const std::vector<Room>& rooms) {
             builder.add_picture(doors[i].right + rooms[i].roll(k + 1, 0.2, 0.4), 0.5, size, 0.7, kPoster);
         }
     };
-    builder.add_panel("corridor north wall", {0, kCorridor, kCorridorZ}, kEast, kDown, kLength, kCorridorZ,
+    builder.add_panel("corridor north wall", {0, kCorridor, kPassageZ}, kEast, kDown, kLength, kPassageZ,
                       kWhite, north);
     decorate(north, 30);
-    builder.add_panel("corridor south wall", {kLength, 0, kCorridorZ}, kWest, kDown, kLength, kCorridorZ,
+    builder.add_panel("corridor south wall", {kLength, 0, kPassageZ}, kWest, kDown, kLength, kPassageZ,
                       kYellow, south);
     decorate(south, 40);
-    builder.add_panel("corridor west wall", {0, 0, kCorridorZ}, kNorth, kDown, kCorridor, kCorridorZ, kBlue);
+    builder.add_panel("corridor west wall", {0, 0, kPassageZ}, kNorth, kDown, kCorridor, kPassageZ, kBlue);
     builder.add_picture(0.4, 0.5, 0.8, 1.1, kPoster);
-    builder.add_panel("corridor east wall", {kLength, kCorridor, kCorridorZ}, kSouth, kDown, kCorridor,
-                      kCorridorZ, kBlue);
+    builder.add_panel("corridor east wall", {kLength, kCorridor, kPassageZ}, kSouth, kDown, kCorridor,
+                      kPassageZ, kBlue);
     builder.add_picture(0.6, 0.5, 0.8, 1.1, kPoster);
     for (int i = 0; i < kRoomsASide; i += 2)
         builder.world().lamps.push_back({{(i + 1) * kPitch, 0.5 * kCorridor, 2.2}, 0.8});
@@ -163,7 +164,7 @@ void add_corridor(WorldBuilder& builder, const std::vector<Room>& rooms) {
 
 /// Through the door, a look to the right, to the left and at the door wall, and out.
 void visit(const Room& room, std::vector<Waypoint>& tour) {
-    const double door = room.door + 0.5 * kDoorWidth, middle = 0.5 * (door + 0.5 * kWidth);
+    const double door = room.door + 0.5 * kDoorWidth, middle = 0.5 * (door + 0.5 * kRoomWidth);
     const auto add = [&](double x, double y, double to_x, double to_y, double to_z) {
         tour.push_back({room.at(x, y, 1.45), room.at(to_x, to_y, to_z)});
     };

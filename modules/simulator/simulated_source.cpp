@@ -16,7 +16,7 @@ namespace planemap::simulator {
 namespace {
 
 constexpr std::int64_t kStartUtime = 1000000;
-constexpr int kDefaultFrames = 900, kMaxFrames = SimulatorOptions::kMaxFrames;
+constexpr int kDefaultFrames = 900;
 
 }  // namespace
 
@@ -61,7 +61,7 @@ void SimulatedSource::walk() {
     }
     if (options_.visits > 0 || world_.whole_tour) {
         const double round_s = tour_duration(tour, hand, options_.seed);
-        frames = static_cast<int>(std::min<double>(round_s * options_.rate_hz, kMaxFrames));
+        frames = static_cast<int>(std::min<double>(round_s * options_.rate_hz, SimulatorOptions::kMaxFrames));
     }
     frame_count_ = static_cast<std::size_t>(options_.frames > 0 ? options_.frames : frames);
     const double duration_s = static_cast<double>(frame_count_) / options_.rate_hz + 1;
@@ -73,8 +73,9 @@ void SimulatedSource::follow_trajectory() {
     require_poses(options_.trajectory, recorded);
     path_ = fit_path(recorded, world_);
     const auto duration_s = static_cast<double>(path_.back().utime - path_.front().utime) * 1e-6;
-    const int longest =
-        static_cast<int>(std::min<double>(duration_s * options_.rate_hz + 0.01, kMaxFrames)) + 1;
+    const int longest = static_cast<int>(std::min<double>(duration_s * options_.rate_hz + 0.01,
+                                                          SimulatorOptions::kMaxFrames)) +
+                        1;
     FieldErrors errors("simulator options");
     errors.require(options_.frames <= longest, "frames", options_.frames,
                    "at most the trajectory's " + std::to_string(longest));

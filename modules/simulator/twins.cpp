@@ -10,29 +10,32 @@ using Eigen::Vector3d;
 namespace {
 
 const Vector3d kApart(7.0, 0, 0);  // of the two rooms
-constexpr double kFrom = 1.2, kTo = 12.4, kNear = -0.12, kDepth = 1.6, kHeight = 2.5;
+constexpr double kTwinFrom = 1.2, kTwinTo = 12.4, kTwinNear = -0.12, kTwinDepth = 1.6, kTwinHeight = 2.5;
 
 void add_long_corridor(WorldBuilder& twins) {
-    constexpr double kFar = kNear - kDepth, kLength = kTo - kFrom;
-    const double door = kOfficeDoorFrom - kFrom, door_width = kOfficeDoorTo - kOfficeDoorFrom;
+    constexpr double kFar = kTwinNear - kTwinDepth, kLength = kTwinTo - kTwinFrom;
+    const double door = kOfficeDoorFrom - kTwinFrom, door_width = kOfficeDoorTo - kOfficeDoorFrom;
     const Hole doors[] = {
-        {door, kHeight - kOfficeDoorZ, door + door_width, kHeight},
-        {door + kApart.x(), kHeight - kOfficeDoorZ, door + kApart.x() + door_width, kHeight}};
-    twins.add_panel("floor", {kFrom, kNear, 0}, kEast, kSouth, kLength, kDepth, kFloorTiles);
+        {door, kTwinHeight - kOfficeDoorZ, door + door_width, kTwinHeight},
+        {door + kApart.x(), kTwinHeight - kOfficeDoorZ, door + kApart.x() + door_width, kTwinHeight}};
+    twins.add_panel("floor", {kTwinFrom, kTwinNear, 0}, kEast, kSouth, kLength, kTwinDepth, kFloorTiles);
     for (const double from : {kOfficeDoorFrom, kOfficeDoorFrom + kApart.x()})
-        twins.add_panel("floor", {from, 0, 0}, kEast, kSouth, door_width, -kNear, kOak);
-    twins.add_panel("corridor ceiling", {kFrom, kFar, kHeight}, kEast, kNorth, kLength, kDepth,
+        twins.add_panel("floor", {from, 0, 0}, kEast, kSouth, door_width, -kTwinNear, kOak);
+    twins.add_panel("corridor ceiling", {kTwinFrom, kFar, kTwinHeight}, kEast, kNorth, kLength, kTwinDepth,
                     kCeilingBoards);
-    twins.add_panel("corridor north wall", {kFrom, kNear, kHeight}, kEast, kDown, kLength, kHeight, kWhite,
-                    doors);
+    twins.add_panel("corridor north wall", {kTwinFrom, kTwinNear, kTwinHeight}, kEast, kDown, kLength,
+                    kTwinHeight, kWhite, doors);
     for (const double left : {0.4, 1.2, 3.2, 4.4, 5.3, 6.6, 7.9, 10.1})
         twins.add_picture(left, 0.7, 0.5, 0.7, kPoster);
-    twins.add_panel("corridor south wall", {kTo, kFar, kHeight}, kWest, kDown, kLength, kHeight, kYellow);
+    twins.add_panel("corridor south wall", {kTwinTo, kFar, kTwinHeight}, kWest, kDown, kLength, kTwinHeight,
+                    kYellow);
     for (const double left : {0.5, 1.5, 2.9, 3.8, 5.2, 6.4, 7.2, 8.7, 9.9})
         twins.add_picture(left, 0.65, 0.6, 0.8, kPoster);
-    twins.add_panel("corridor west wall", {kFrom, kFar, kHeight}, kNorth, kDown, kDepth, kHeight, kBlue);
+    twins.add_panel("corridor west wall", {kTwinFrom, kFar, kTwinHeight}, kNorth, kDown, kTwinDepth,
+                    kTwinHeight, kBlue);
     twins.add_picture(0.35, 0.45, 0.9, 2.05, kOak);
-    twins.add_panel("corridor east wall", {kTo, kNear, kHeight}, kSouth, kDown, kDepth, kHeight, kWhite);
+    twins.add_panel("corridor east wall", {kTwinTo, kTwinNear, kTwinHeight}, kSouth, kDown, kTwinDepth,
+                    kTwinHeight, kWhite);
     twins.add_picture(0.4, 0.6, 0.8, 1.1, kPoster);
 }
 

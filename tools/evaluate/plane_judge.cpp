@@ -12,7 +12,6 @@ namespace {
 
 constexpr double kParallel_deg = 5, kLeastDistance_m = 0.3, kSameRoom_m = 6;
 constexpr double kMergeGap_m = 0.5, kLeastShare_m2 = 0.05;
-constexpr double kCellArea = PlaneRaster::kCell_m * PlaneRaster::kCell_m;
 
 /// A plane of the map in the truth's world.
 struct Candidate {
@@ -50,7 +49,7 @@ double overlap(const Candidate& candidate, const TruePlane& truth) {
         const Eigen::Vector2d p = truth.visible.cell_centre(x, y);
         cells += std::abs(seen_from_truth.signed_distance({p.x(), p.y(), 0})) <= kMaxDistance_m;
     });
-    return static_cast<double>(cells) * kCellArea;
+    return static_cast<double>(cells) * PlaneRaster::kCellArea_m2;
 }
 
 /// Areas of overlap; row: candidate, column: true plane.
@@ -109,8 +108,8 @@ TruePlaneVerdict verdict_of(const std::vector<TruePlane>& all, std::size_t colum
             beside += !is_elsewhere(all, column, x, y);
         }
     });
-    verdict.common_m2 = static_cast<double>(common) * kCellArea;
-    verdict.united_m2 = verdict.area + static_cast<double>(beside) * kCellArea;
+    verdict.common_m2 = static_cast<double>(common) * PlaneRaster::kCellArea_m2;
+    verdict.united_m2 = verdict.area + static_cast<double>(beside) * PlaneRaster::kCellArea_m2;
     verdict.iou = verdict.common_m2 / verdict.united_m2;
     return verdict;
 }

@@ -10,7 +10,7 @@ namespace planemap::evaluation {
 /// [y, y+1] times cell_m. Rasters of one plane and cell size have the same lattice, whatever part of it they
 /// hold.
 struct PlaneRaster {
-    static constexpr double kCell_m = 0.025;
+    static constexpr double kCell_m = 0.025, kCellArea_m2 = kCell_m * kCell_m;
 
     double cell_m = kCell_m;
     int x0 = 0, y0 = 0;  ///< lattice cell of the mask's first

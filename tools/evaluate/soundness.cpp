@@ -14,7 +14,7 @@ namespace planemap::evaluation {
 
 namespace {
 
-constexpr double kCell_m = PlaneRaster::kCell_m, kCellArea = kCell_m * kCell_m;
+constexpr double kCell_m = PlaneRaster::kCell_m;
 constexpr double kSigmas = 2;    // of a reading on one of two surfaces,
 constexpr double kApart = 6;     // and of two that noise cannot take for each other
 constexpr int kLeastSteps = 10;  // from one to the other in one view
@@ -207,9 +207,9 @@ void look_through(const MapFace& face, const std::vector<PosedView>& views, cons
         });
     }
     for (const Looks& look : looks) {
-        verdict.seen_m2 += look.seen > 0 ? kCellArea : 0;
-        verdict.floating_m2 += 2 * look.behind > look.seen ? kCellArea : 0;
-        verdict.confirmed_m2 += look.on_it > 0 ? kCellArea : 0;
+        verdict.seen_m2 += look.seen > 0 ? PlaneRaster::kCellArea_m2 : 0;
+        verdict.floating_m2 += 2 * look.behind > look.seen ? PlaneRaster::kCellArea_m2 : 0;
+        verdict.confirmed_m2 += look.on_it > 0 ? PlaneRaster::kCellArea_m2 : 0;
     }
 }
 
@@ -229,7 +229,7 @@ double doubled_area(const std::vector<MapFace>& faces, const std::vector<Pair>& 
             is = 1;
         }
     }
-    return static_cast<double>(count) * kCellArea;
+    return static_cast<double>(count) * PlaneRaster::kCellArea_m2;
 }
 
 }  // namespace
@@ -280,7 +280,7 @@ Soundness soundness(const PlaneMap& map, const std::vector<PosedView>& views, co
     for (const Pair& pair : pairs) {
         if (pair.views >= limits.least_views) continue;
         result.doubled.push_back({map.planes[pair.small].id, map.planes[pair.large].id,
-                                  static_cast<double>(pair.cells.size()) * kCellArea});
+                                  static_cast<double>(pair.cells.size()) * PlaneRaster::kCellArea_m2});
     }
     std::stable_sort(result.doubled.begin(), result.doubled.end(),
                      [](const auto& a, const auto& b) { return a.area_m2 > b.area_m2; });

@@ -17,7 +17,7 @@ namespace planemap {
 
 namespace {
 
-constexpr std::size_t kMostPoints = 5'000'000;
+constexpr std::size_t kMostStoredPoints = 5'000'000;
 constexpr std::size_t kMostBytes = std::size_t{256} << 20;
 constexpr std::size_t kLongestHeader = std::size_t{64} << 10;
 
@@ -67,8 +67,8 @@ std::size_t point_count(const std::string& text) {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), count);
     if (error != std::errc() || end != text.data() + text.size())
         fail("vertex " + shown_text(text) + " is no number of points");
-    if (count > kMostPoints)
-        fail(std::to_string(count) + " points, more than the " + std::to_string(kMostPoints) +
+    if (count > kMostStoredPoints)
+        fail(std::to_string(count) + " points, more than the " + std::to_string(kMostStoredPoints) +
              " that are read");
     return count;
 }

@@ -18,11 +18,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kBytesPerPoint = 12;     // three floats, as the paper counts
 constexpr double kMostTreeBytes = 512e6;  // of an OctoMap that is built to be measured
 
 std::int64_t points_bytes(double points) {
-    return static_cast<std::int64_t>(kBytesPerPoint * points);
+    return static_cast<std::int64_t>(static_cast<double>(kCloudPointBytes) * points);
 }
 
 /// What a row of the OctoMap takes once it is compressed.

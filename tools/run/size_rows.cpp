@@ -26,8 +26,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kBytesPerPoint = 12;  // three floats, as the paper counts
-constexpr int kZstdLevel = 3;               // zstd's own default; a higher one takes a minute for a large .bt
+constexpr int kZstdLevel = 3;  // zstd's own default; a higher one takes a minute for a large .bt
 
 template <typename T>
 Json or_null(const std::optional<T>& value) {
@@ -223,7 +222,7 @@ void add_cloud_rows(const octomap::VoxelSet& cloud_1cm, Json& rows) {
         rows.push_back(SizeRow{.map = "cloud",
                                .form = "12 B a voxel",
                                .resolution_m = cm / 100.0,
-                               .bytes = kBytesPerPoint * points,
+                               .bytes = kCloudPointBytes * points,
                                .leaves = points}
                            .json());
     }

@@ -24,6 +24,9 @@ std::vector<double> size_resolutions(const std::string& text);
 /// What bytes take once zstd compressed them, at its own default level.
 std::size_t zstd_bytes(std::string_view bytes);
 
+/// A point of a cloud: three floats, as the paper counts.
+inline constexpr std::size_t kCloudPointBytes = 12;
+
 /// One map in one form.
 struct SizeRow {
     std::string map;   ///< "planes", "octomap", "octree", "openvdb" or "cloud"

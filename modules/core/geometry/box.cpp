@@ -16,13 +16,13 @@ double distance_to_box(const Box& box, const Eigen::Vector3d& p) {
 }
 
 /// An edge of a box: centre -+ half.
-struct Edge {
+struct BoxEdge {
     Eigen::Vector3d centre, half;
 };
 
-std::array<Edge, 12> edges(const Box& box) {
+std::array<BoxEdge, 12> edges(const Box& box) {
     const Eigen::Matrix3d spans = box.frame_from_box.linear() * box.half_extents.asDiagonal();
-    std::array<Edge, 12> all;
+    std::array<BoxEdge, 12> all;
     for (unsigned i = 0; i < 12; ++i) {
         const int along = static_cast<int>(i / 4), second = (along + 1) % 3, third = (along + 2) % 3;
         const Eigen::Vector3d offset =
@@ -34,7 +34,7 @@ std::array<Edge, 12> edges(const Box& box) {
 
 /// Squared distance between two edges where their lines are nearest, or infinity if that is not within both:
 /// an end is then nearest, and the corners' distances cover it.
-double squared_distance_between(const Edge& a, const Edge& b) {
+double squared_distance_between(const BoxEdge& a, const BoxEdge& b) {
     const Eigen::Vector3d between = b.centre - a.centre;
     const double aa = a.half.squaredNorm(), bb = b.half.squaredNorm(), ab = a.half.dot(b.half);
     const double determinant = aa * bb - ab * ab;
@@ -105,8 +105,8 @@ double distance(const Box& a, const Box& b) {
     for (const auto& corner : b.corners()) nearest = std::min(nearest, distance_to_box(a, corner));
     double nearest_squared = nearest * nearest;
     const auto edges_a = edges(a), edges_b = edges(b);
-    for (const Edge& edge_a : edges_a) {
-        for (const Edge& edge_b : edges_b)
+    for (const BoxEdge& edge_a : edges_a) {
+        for (const BoxEdge& edge_b : edges_b)
             nearest_squared = std::min(nearest_squared, squared_distance_between(edge_a, edge_b));
     }
     return std::sqrt(nearest_squared);
