@@ -7,15 +7,16 @@
 #include <stop_token>
 #include <vector>
 
+#include "octomap/block_table.hpp"
 #include "octomap/tree_blocks.hpp"
-#include "octomap/voxel_set.hpp"
 
 namespace planemap::octomap {
 
 /// Inserts scans into an OctoMap with the result of
-/// OcTree::insertPointCloud(scan, origin, max_range, lazy_eval = true, discretize = true), several times
-/// faster: the cells of a scan are gathered in bitmaps instead of OctoMap's hash sets. Inner nodes are not
-/// brought up to date: call bring_up_to_date() when the scans are in.
+/// OcTree::insertPointCloud(scan, origin, max_range, lazy_eval = true, discretize = true), many times faster:
+/// the cells of a scan are gathered in a grid of bitmaps instead of OctoMap's hash sets, and the tree is
+/// entered once for a block of them (TreeUpdate). Inner nodes are not brought up to date: call
+/// bring_up_to_date() when the scans are in.
 class ScanInserter {
   public:
     /// Points and origin in the tree's frame, metres; points outside the tree's 16-bit key range are ignored.
@@ -38,13 +39,19 @@ class ScanInserter {
     std::vector<Voxel> blocks() const;
 
     /// Of the cells of the largest scan so far, kept for the next one.
-    std::size_t memory_bytes() const {
-        return ends_.memory_bytes() + free_.memory_bytes() + occupied_.memory_bytes();
-    }
+    std::size_t memory_bytes() const { return cells_.memory_bytes(); }
 
   private:
-    VoxelSet ends_, free_, occupied_;
-    ::octomap::KeyRay ray_;
+    /// Of 8x8x8 cells, by their OctoMap keys.
+    struct Block {
+        BlockBits passed{};  ///< by rays
+        BlockBits hit{};     ///< which counts, where a cell is both
+    };
+    class Ray;
+
+    void cast(const ::octomap::OcTree& tree, const ::octomap::point3d& origin, const ::octomap::point3d& end);
+
+    BlockTable<Block> cells_;
 };
 
 }  // namespace planemap::octomap

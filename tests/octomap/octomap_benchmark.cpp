@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The OctoMap process over a long walk: how long messages wait, what is dropped, how soon it stops.
 //   octomap_benchmark [keyframes=3000] [keyframes a second=30] [background=1]
+//   octomap_benchmark insertion ...   what depth images cost beside OctoMap's own insertion: see there
 // A camera of 640 x 480 walks through rooms and comes back to them; every hundredth keyframe closes a loop,
 // which moves all keyframes since the last one and, every fifth time, all there are. Keyframes come at a
 // fixed rate, as over udp: what a handler holds up waits in a queue of 8 frames, and then the newest is
@@ -21,6 +22,7 @@
 #include "messages/channels.hpp"
 #include "messages/convert.hpp"
 #include "messages/decode.hpp"
+#include "octomap/insertion_benchmark.hpp"
 #include "octomap/octomap_shell.hpp"
 
 namespace planemap::octomap {
@@ -195,6 +197,8 @@ int run(int keyframes, double rate_hz, bool background) {
 }  // namespace planemap::octomap
 
 int main(int argc, char** argv) {
+    if (argc > 1 && std::string(argv[1]) == "insertion")
+        return planemap::octomap::insertion_benchmark({argv + 2, argv + argc});
     const int keyframes = argc > 1 ? std::atoi(argv[1]) : 3000;
     const double rate_hz = argc > 2 ? std::atof(argv[2]) : 30;
     return planemap::octomap::run(std::max(keyframes, 1), std::max(rate_hz, 0.1),

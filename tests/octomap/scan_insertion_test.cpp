@@ -48,6 +48,36 @@ TEST(ScanInserter, GivesTheTreeThatOctomapGives) {
     }
 }
 
+/// Rays along the axes and diagonals, where cells' borders are met at once, and from anywhere in a cell.
+TEST(ScanInserter, PassesTheCellsThatOctomapPasses) {
+    for (const double resolution : {0.01, 0.05, 0.3}) {
+        std::mt19937_64 random(7);
+        std::uniform_int_distribution<int> steps(-20, 20);
+        std::uniform_real_distribution<float> anywhere(-2, 2);
+        ::octomap::OcTree ours(resolution), theirs(resolution);
+        ScanInserter inserter;
+        for (int i = 0; i < 300; ++i) {
+            const auto edge = static_cast<float>(resolution);
+            const auto c = [&] {
+                return i % 3 == 0 ? anywhere(random)
+                                  : (i % 3 == 1 ? 0.5f : 0.0f) * edge +
+                                        edge * static_cast<float>(steps(random) / (1 + i % 7));
+            };
+            const ::octomap::point3d origin(c(), c(), c());
+            const std::vector<::octomap::point3d> scan{
+                {c(), c(), c()}, {origin.x(), c(), origin.z()}, {c(), origin.y(), origin.z()}, origin};
+            inserter.insert(ours, scan, origin, 3);
+            insert_with_octomap(theirs, scan, origin, 3);
+        }
+        for (::octomap::OcTree* tree : {&ours, &theirs}) {
+            tree->updateInnerOccupancy();
+            tree->prune();
+        }
+        EXPECT_GT(ours.size(), 300u);
+        EXPECT_TRUE(ours == theirs) << resolution;
+    }
+}
+
 TEST(ScanInserter, IgnoresPointsThatTheTreeCannotHold) {
     ::octomap::OcTree tree(0.05);
     const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
