@@ -26,17 +26,23 @@ using bot_core::images_t;
 
 constexpr const char *kSeqKey = "seq", *kSenderKey = "sender";
 
+/// Adds what passes from its construction to its destruction.
+template <typename Spent>
 class Timer {
   public:
-    explicit Timer(double& total_ms) : total_ms_(total_ms) {}
+    explicit Timer(Spent& spent) : spent_(spent) {}
     ~Timer() {
-        total_ms_ +=
+        spent_.ms +=
             std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
+        spent_.cpu_ms += thread_cpu_ms() - cpu_start_ms_;
     }
+    Timer(const Timer&) = delete;
+    Timer& operator=(const Timer&) = delete;
 
   private:
-    double& total_ms_;
+    Spent& spent_;
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+    double cpu_start_ms_ = thread_cpu_ms();
 };
 
 template <typename T>
@@ -78,9 +84,8 @@ images_t decode_images(std::span<const std::uint8_t> bytes) {
 
 }  // namespace
 
-Frame::Frame(images_t images, std::shared_ptr<const Undistortion> camera,
-             std::shared_ptr<Histogram> decode_ms)
-    : images_(std::move(images)), camera_(std::move(camera)), decode_ms_(std::move(decode_ms)) {
+Frame::Frame(images_t images, std::shared_ptr<const Undistortion> camera, std::shared_ptr<DecodeTimes> times)
+    : images_(std::move(images)), camera_(std::move(camera)), times_(std::move(times)) {
     color_ = find_color(images_);
     raw_depth_ = find_depth(images_);
     zipped_ = depth_is_zipped(images_);
@@ -93,7 +98,15 @@ Frame::Frame(images_t images, std::shared_ptr<const Undistortion> camera,
 }
 
 Frame::~Frame() {
-    if (spent_ms_ > 0) decode_ms_->add(spent_ms_);
+    const double ms = decoding_.ms + registering_.ms;
+    if (ms > 0) {
+        times_->decode_ms.add(ms);
+        times_->decode_cpu_ms.add(decoding_.cpu_ms + registering_.cpu_ms);
+    }
+    if (registering_.ms > 0) {
+        times_->registration_ms.add(registering_.ms);
+        times_->registration_cpu_ms.add(registering_.cpu_ms);
+    }
 }
 
 std::int64_t Frame::color_utime() const {
@@ -120,7 +133,7 @@ void set_sender(image_t& image, std::uint64_t sender) {
 
 const DepthImage& Frame::depth() const {
     if (!depth_) {
-        const Timer timer(spent_ms_);
+        const Timer timer(decoding_);
         depth_ = depth_pixels(*raw_depth_, zipped_);
         correct_depth(*depth_, camera_->sensed());
         camera_->undistort(*depth_);
@@ -132,7 +145,7 @@ const DepthImage& Frame::depth_in_color() const {
     const DepthImage& sensed = depth();
     if (camera().registered && camera().depth == camera().color) return sensed;
     if (!depth_in_color_) {
-        const Timer timer(spent_ms_);
+        const Timer timer(registering_);
         depth_in_color_ = register_depth(sensed, camera());
         camera_->hide_unseen(*depth_in_color_);
     }
@@ -142,7 +155,7 @@ const DepthImage& Frame::depth_in_color() const {
 const GrayImage* Frame::gray() const {
     if (color_ == nullptr) return nullptr;
     if (!gray_) {
-        const Timer timer(spent_ms_);
+        const Timer timer(decoding_);
         gray_ = luma_pixels(*color_);
         camera_->undistort(*gray_);
     }
@@ -275,7 +288,7 @@ Verdict FrameDecoder::judge(const images_t& images, std::uint32_t checksum) {
 
 std::shared_ptr<const Frame> FrameDecoder::decode(const RawMessage& message) const {
     if (!camera_) return nullptr;
-    return std::make_shared<const Frame>(decode_images(message.bytes), camera_, decode_ms_);
+    return std::make_shared<const Frame>(decode_images(message.bytes), camera_, times_);
 }
 
 /// The frame, if it is the next one of the sender that is followed; else why not.
@@ -288,14 +301,12 @@ std::pair<std::shared_ptr<const Frame>, Verdict> FrameDecoder::take(const RawMes
         metadata<std::uint64_t>(*depth, kSenderKey) && judge(images, checksum) == Verdict::kForeign) {
         return {nullptr, Verdict::kForeign};
     }
-    auto frame =
-        std::make_shared<const Frame>(std::move(images), is_other ? other_camera_ : camera_, decode_ms_);
+    auto frame = std::make_shared<const Frame>(std::move(images), is_other ? other_camera_ : camera_, times_);
     const Verdict verdict = judge(frame->images_, checksum);
     if (verdict == Verdict::kTake) {
         choose_camera(frame->images_);
         newest_utime_ = frame->utime();
-        if (frame->camera_ != camera_)
-            frame = std::make_shared<const Frame>(frame->images_, camera_, decode_ms_);
+        if (frame->camera_ != camera_) frame = std::make_shared<const Frame>(frame->images_, camera_, times_);
     }
     return {std::move(frame), verdict};
 }

@@ -21,13 +21,20 @@
 
 namespace planemap::messages {
 
+/// What images took, milliseconds, an entry a frame that it was done for: by the clock, and in CPU time of
+/// the thread that did it.
+struct DecodeTimes {
+    Histogram decode_ms, decode_cpu_ms;              ///< decoding and registration
+    Histogram registration_ms, registration_cpu_ms;  ///< the second of these
+};
+
 /// One RGB-D frame off the bus. Images are decoded when first asked for, once, and kept; whoever shares the
 /// frame shares them. All accessors throw MessageError for images that are corrupt or not of the camera's
 /// size, every time they are asked.
 class Frame {
   public:
     Frame(bot_core::images_t images, std::shared_ptr<const Undistortion> camera,
-          std::shared_ptr<Histogram> decode_ms);
+          std::shared_ptr<DecodeTimes> times);
     ~Frame();
     Frame(const Frame&) = delete;
     Frame& operator=(const Frame&) = delete;
@@ -57,11 +64,14 @@ class Frame {
 
     bot_core::images_t images_;
     std::shared_ptr<const Undistortion> camera_;
-    std::shared_ptr<Histogram> decode_ms_;
+    std::shared_ptr<DecodeTimes> times_;
     const bot_core::image_t* color_ = nullptr;  // into images_
     const bot_core::image_t* raw_depth_ = nullptr;
     bool zipped_ = false;
-    mutable double spent_ms_ = 0;
+    struct Spent {
+        double ms = 0, cpu_ms = 0;
+    };
+    mutable Spent decoding_, registering_;
     mutable std::optional<DepthImage> depth_, depth_in_color_;
     mutable std::optional<GrayImage> gray_;
 };
@@ -100,8 +110,9 @@ class FrameDecoder {
 
     /// Of the images as they come; nullptr when it is not described yet.
     const CameraInfo* camera() const { return camera_ ? &camera_->sensed() : nullptr; }
-    /// Milliseconds that images took to decode and register, one entry a frame that was decoded.
-    const Histogram& decode_ms() const { return *decode_ms_; }
+    /// Of the frames that are gone by now.
+    const DecodeTimes& times() const { return *times_; }
+    const Histogram& decode_ms() const { return times_->decode_ms; }
 
   private:
     struct Subscriber {
@@ -127,7 +138,7 @@ class FrameDecoder {
         described_utime_;  ///< of frames; when camera_ was described last
     SenderGuard guard_{channels::kFrame};
     std::vector<Subscriber> subscribers_;
-    std::shared_ptr<Histogram> decode_ms_ = std::make_shared<Histogram>();
+    std::shared_ptr<DecodeTimes> times_ = std::make_shared<DecodeTimes>();
 };
 
 /// Adds the "seq" metadata that Frame::seq() reads.

@@ -79,12 +79,15 @@ TEST_F(RunTest, WritesEverythingAndTheSameBytesAgain) {
                             "loop_closures", "planes", "components", "wall_s", "cpu_s", "peak_rss_mb"}) {
         EXPECT_TRUE(r.contains(key)) << key;
     }
-    for (const char* stage : {"decode", "segmentation", "odometry", "graph", "map", "octomap"}) {
+    for (const char* stage : {"input", "simulation", "decode", "segmentation", "odometry", "graph", "map",
+                              "octomap", "sizes", "report"}) {
         EXPECT_GT(r.at("stages_ms").at(stage).at("count").get<int>(), 0) << stage;
         EXPECT_GT(r.at("stages_ms").at(stage).at("median").get<double>(), 0) << stage;
         EXPECT_GE(r.at("stages_ms").at(stage).at("p95").get<double>(),
                   r.at("stages_ms").at(stage).at("median").get<double>());
+        EXPECT_GT(r.at("stages_ms").at(stage).at("cpu_total_s").get<double>(), 0) << stage;
     }
+    EXPECT_EQ(r.at("stages_ms").at("reading").at("count"), 0);
     for (const char* key : {"plane_map_memory", "plane_map_message", "octomap_memory", "octomap_bt",
                             "octomap_ot", "octomap_occupied_leaves", "raw_cloud", "voxel_cloud_1cm"}) {
         EXPECT_GT(r.at("sizes_bytes").at(key).get<std::int64_t>(), 0) << key;

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "messages/channels.hpp"
+#include "messages/module_status.hpp"
 #include "sensor/log_frames.hpp"
 #include "sensor/sensor_shell.hpp"
 #include "simulator/planes_truth.hpp"
@@ -46,13 +47,10 @@ class SensorInput : public Input {
     }
 
     std::optional<Trajectory> truth() const override {
-        if (const auto* simulated =
-                dynamic_cast<const simulator::SimulatedSource*>(&shell_.source().origin()))
-            return simulated->ground_truth();
-        return truth_;
+        return simulated() != nullptr ? simulated()->ground_truth() : truth_;
     }
     std::vector<Result> truth_results() const override {
-        const auto* simulated = dynamic_cast<const simulator::SimulatedSource*>(&shell_.source().origin());
+        const simulator::SimulatedSource* simulated = this->simulated();
         if (simulated == nullptr) return {};
         return {
             {"groundtruth.txt", [=](const auto& file) { write_trajectory(file, simulated->ground_truth()); }},
@@ -60,8 +58,13 @@ class SensorInput : public Input {
              [=](const auto& file) { simulator::write_planes_truth(file, *simulated); }}};
     }
 
+    bool is_simulated() const override { return simulated() != nullptr; }
+
   private:
     bool publish_next() override { return shell_.poll() >= 0; }
+    const simulator::SimulatedSource* simulated() const {
+        return dynamic_cast<const simulator::SimulatedSource*>(&shell_.source().origin());
+    }
     static sensor::SensorShellOptions in_process() {
         sensor::SensorShellOptions options;
         options.speed = 0;
@@ -149,11 +152,13 @@ class LogInput : public Input {
 
 bool Input::feed() {
     const auto start = std::chrono::steady_clock::now();
+    const double cpu_start_ms = messages::thread_cpu_ms();
     const bool more = publish_next();
     is_at_end_ = !more;
     if (more) {
         read_ms_.add(
             std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+        read_cpu_ms_.add(messages::thread_cpu_ms() - cpu_start_ms);
     }
     return more;
 }

@@ -39,13 +39,17 @@ class Input {
     virtual std::optional<Trajectory> truth() const { return std::nullopt; }
     /// What only the simulator knows: groundtruth.txt and planes_truth.json.
     virtual std::vector<Result> truth_results() const { return {}; }
-    /// Time of each feed(), ms: reading and decoding files, or rendering.
+    /// What each feed() took, ms: reading and decoding files, or rendering. By the clock, and CPU time of the
+    /// thread.
     const Histogram& read_ms() const { return read_ms_; }
+    const Histogram& read_cpu_ms() const { return read_cpu_ms_; }
+    /// True when that is rendering.
+    virtual bool is_simulated() const { return false; }
 
   private:
     virtual bool publish_next() = 0;
 
-    Histogram read_ms_;
+    Histogram read_ms_, read_cpu_ms_;
     bool is_at_end_ = false;
 };
 

@@ -26,6 +26,7 @@
 #include "run/report.hpp"
 #include "run/size_report.hpp"
 #include "run/size_rows.hpp"
+#include "run/stages.hpp"
 #include "run/warnings.hpp"
 #include "run/worth.hpp"
 
@@ -51,22 +52,6 @@ double peak_rss_mb() {
     rusage usage = {};
     getrusage(RUSAGE_SELF, &usage);
     return static_cast<double>(usage.ru_maxrss) / 1024;  // Linux counts in KiB
-}
-
-Json stage(const Histogram& ms) {
-    return {{"median", ms.median()}, {"p95", ms.p95()}, {"count", ms.count()}, {"total_s", ms.sum() / 1000}};
-}
-
-Json stages(const Input& input, pipeline::Pipeline& pipeline) {
-    return {
-        {"input", stage(input.read_ms())},
-        {"decode", stage(pipeline.decoder().decode_ms())},
-        {"segmentation", stage(pipeline.segmentation().status().work_ms())},
-        {"odometry", stage(pipeline.odometry().status().work_ms())},
-        {"graph", stage(pipeline.graph() != nullptr ? pipeline.graph()->status().work_ms() : Histogram())},
-        {"map", stage(pipeline.map().status().work_ms())},
-        {"octomap",
-         stage(pipeline.octomap() != nullptr ? pipeline.octomap()->status().work_ms() : Histogram())}};
 }
 
 }  // namespace
@@ -201,6 +186,7 @@ Reported report_of(const std::string& input_name, const Input& input, pipeline::
     const auto& estimates = pipeline.estimates();
     const std::int64_t tracked = tracked_frames(pipeline);
     const KeyframeTrajectory& keyframes = pipeline.keyframes();
+    const StageTimer whole;
     Json report;
     report["input"] = input_name;
     report["frames"] = input.frames();
@@ -224,7 +210,7 @@ Reported report_of(const std::string& input_name, const Input& input, pipeline::
     report["wall_s"] = watch.clock.wall_s();
     report["cpu_s"] = watch.clock.cpu_s();
     report["peak_rss_mb"] = peak_rss_mb();
-    report["stages_ms"] = stages(input, pipeline);
+    report["stages_ms"] = stages_of(input, pipeline);
     const double octomap_s = report["stages_ms"]["octomap"]["total_s"].get<double>();
     report["frames_per_s_without_octomap"] =
         static_cast<double>(input.frames()) / std::max(watch.clock.wall_s() - octomap_s, 1e-9);
@@ -232,7 +218,9 @@ Reported report_of(const std::string& input_name, const Input& input, pipeline::
     if (!input.failure().empty()) complaints.push_back(input.failure());
     for (const std::string& line : pipeline.complaints().totals()) complaints.push_back(line);
     report["complaints"] = complaints;
+    const StageTimer sizing;
     add_sizes(pipeline, input.frames(), watch.size_resolutions_m, report);
+    Json sizes = sizing.figures();
     add_accuracy(input, pipeline, report);
     std::vector<CloudPoint> points = judge(pipeline, watch.depth, report);
     report["growth"] = watch.growth.figures();
@@ -242,6 +230,9 @@ Reported report_of(const std::string& input_name, const Input& input, pipeline::
     for (const std::string& remark : remarks_of(pipeline)) warnings.push_back(remark);
     report["warnings"] = warnings;
     report.update(about);
+    report["stages_ms"]["report"] = whole.figures();
+    sizes["part_of"] = "report";
+    report["stages_ms"]["sizes"] = std::move(sizes);
     return {std::move(report), std::move(points)};
 }
 

@@ -12,28 +12,13 @@
 #include "run/losses.hpp"
 #include "run/report_text.hpp"
 #include "run/size_report.hpp"
+#include "run/stages.hpp"
 
 namespace planemap {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-void add_times(const Json& report, std::string& out) {
-    out += "\n## Time\n\n| stage | median ms | p95 ms | times |\n| --- | ---: | ---: | ---: |\n";
-    for (const auto& [stage, figures] : report.at("stages_ms").items()) {
-        const double count = figures.at("count").get<double>();
-        const bool simulated = stage == "input" && report.at("input").get<std::string>().starts_with("sim:");
-        out += "| " + (simulated ? "input: the simulator" : stage) + " | ";
-        out += count > 0 ? format("%.2f", figures.at("median").get<double>()) + " | " +
-                               format("%.2f", figures.at("p95").get<double>())
-                         : std::string("- | -");
-        out += " | " + format("%.0f", count) + " |\n";
-    }
-    out += "\nWall " + format("%.1f s", report.at("wall_s").get<double>()) + ", CPU " +
-           format("%.1f s", report.at("cpu_s").get<double>()) + ", peak memory " +
-           format("%.0f MB", report.at("peak_rss_mb").get<double>()) + ".\n";
-}
 
 /// Of a map that planemap-export found in a file: nothing is known of the run that made it.
 bool is_exported(const Json& report) {
@@ -198,7 +183,7 @@ std::string report_markdown(const Json& report) {
         out += leaf_accuracy_markdown(report);
         if (report.contains("soundness")) out += evaluation::soundness_markdown(report);
         out += growth_markdown(report);
-        if (!is_exported(report)) add_times(report, out);
+        if (!is_exported(report)) out += stages_markdown(report);
         return out;
     } catch (const Json::exception& error) {
         throw std::runtime_error(std::string("is no report of planemap-run: ") + error.what());

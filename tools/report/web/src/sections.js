@@ -93,7 +93,7 @@ export function growth(report) {
     chart('Planes', count, [['planes', data.planes, true]], false), chart('OctoMap nodes', count, [['nodes', data.octomap_nodes]], false)].filter(Boolean)))
 }
 
-const STAGES = { decode: 'decoding images', segmentation: 'segmentation', odometry: 'odometry', graph: 'graph', map: 'map', octomap: 'OctoMap, to compare with' }
+const STAGES = { decode: 'decoding images', segmentation: 'segmentation', odometry: 'odometry', graph: 'graph', map: 'map', octomap: 'OctoMap, to compare with', report: 'this report' }
 
 function inputName(report) {
   const input = String(report.input ?? '')
@@ -104,8 +104,8 @@ function inputName(report) {
 export function time(report) {
   const stages = get(report, 'stages_ms')
   if (!stages || typeof stages !== 'object') return section('time', 'Time', null, unknown('The times of the run that made this map are not known.'))
-  const rows = Object.entries(stages).filter(([, stage]) => stage && stage.count > 0).map(([name, stage]) => ({
-    name: name === 'input' ? inputName(report) : STAGES[name] ?? name, stage, kind: name === 'input' || name === 'octomap' ? 'aside' : 'ours', value: isNumber(stage.total_s) ? stage.total_s : (stage.median * stage.count) / 1000 }))
+  const rows = Object.entries(stages).filter(([, stage]) => stage && stage.count > 0 && !stage.part_of).map(([name, stage]) => ({
+    name: name === 'input' ? inputName(report) : STAGES[name] ?? name, stage, kind: ['input', 'octomap', 'report'].includes(name) ? 'aside' : 'ours', value: isNumber(stage.total_s) ? stage.total_s : (stage.median * stage.count) / 1000 }))
   const list = rows.map((row) => ({ ...row, text: seconds(row.value) }))
   const figures = rows.map((row) => ({ kind: row.kind === 'aside' ? 'aside' : null, cells: [row.name, milliseconds(row.stage.median), milliseconds(row.stage.p95), count(row.stage.count), row.value.toFixed(2)] }))
   const facts = [['by the clock', seconds(report.wall_s)], ['of processors', seconds(report.cpu_s)], ['most memory', isNumber(report.peak_rss_mb) ? `${count(report.peak_rss_mb)} MB` : null],
