@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// planemap-bench-run: what a whole run costs.
+#include <unistd.h>
+
+#include <sstream>
+
+#include "bench_run/ways.hpp"
+#include "benchmark/choices.hpp"
+#include "benchmark/program.hpp"
+#include "benchmark/report.hpp"
+
+namespace planemap::bench_run {
+namespace {
+
+struct Arguments : benchmark::Options {
+    std::string ways = benchmark::names_of(known_ways());
+    std::filesystem::path programs;
+};
+
+std::string description() {
+    std::ostringstream text;
+    text
+        << "What a whole run costs, from programs that are started as a user starts them: frames a second, "
+           "CPU "
+           "time, memory.\nR is the unit: what OpenCV's RgbdPlane takes on every 4th pixel of the same "
+           "depth. "
+           "Beside them stands what\nOctoMap's own insertion takes for a depth image.\nWays:\n"
+        << described_ways()
+        << "Columns: frames (of processes: those that got a pose); frames a second until the maps are whole "
+           "(of "
+           "processes: from start to\nend); CPU time of all processes, of which report is the making of the "
+           "report; CPU time a frame in ms and in R, and R; the\nsum of each process's most memory. Example: "
+           "taskset -c 0 planemap-bench-run --sequences redkitchen";
+    return std::move(text).str();
+}
+
+void add_flags(messages::Flags& flags, Arguments& arguments) {
+    benchmark::add_flags(flags, arguments,
+                         "of each sequence, from its start; 0: all. Processes play all of them");
+    flags.add("ways", arguments.ways, "comma-separated names, see above");
+    flags.add("bin", arguments.programs,
+              "the folder of planemap-run and the other programs; default: where this program is");
+}
+
+/// A folder that goes with this.
+class Scratch {
+  public:
+    Scratch()
+        : path_(std::filesystem::temp_directory_path() /
+                ("planemap_bench_run_" + std::to_string(::getpid()))) {
+        std::filesystem::create_directories(path_);
+    }
+    ~Scratch() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path_, ignored);
+    }
+    Scratch(const Scratch&) = delete;
+    Scratch& operator=(const Scratch&) = delete;
+    const std::filesystem::path& path() const { return path_; }
+
+  private:
+    std::filesystem::path path_;
+};
+
+int run(const Arguments& arguments) {
+    FieldErrors errors("benchmark options");
+    arguments.check(errors);
+    errors.throw_if_any();
+    const std::vector<WayInfo> ways = benchmark::chosen("ways", arguments.ways, known_ways());
+    const std::vector<benchmark::SequenceInfo> sequences = benchmark::parse_sequences(
+        arguments.sequences, benchmark::with_recordings({}), benchmark::Unknown::kIsPath);
+    const Scratch scratch;
+    Bench bench{arguments.programs, arguments.data, scratch.path(), arguments.frames};
+    if (bench.programs.empty())
+        bench.programs = std::filesystem::read_symlink("/proc/self/exe").parent_path();
+    benchmark::Report report(arguments, "OpenCV's RgbdPlane, OctoMap");
+    report.print("\n");
+    report.print(table().heading());
+    report.for_each(sequences, [&](const benchmark::SequenceInfo& sequence) {
+        for (const benchmark::Json& row : rows_of(sequence, ways, bench)) report.add(row, table());
+    });
+    report.finish();
+    return 0;
+}
+
+}  // namespace
+}  // namespace planemap::bench_run
+
+int main(int argc, char** argv) {
+    using namespace planemap::bench_run;
+    Arguments arguments;
+    arguments.sequences = "redkitchen";
+    return planemap::benchmark::run_program("planemap-bench-run", description(), argc, argv, arguments,
+                                            add_flags, run);
+}
