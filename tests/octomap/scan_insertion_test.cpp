@@ -59,9 +59,9 @@ TEST(ScanInserter, PassesTheCellsThatOctomapPasses) {
         for (int i = 0; i < 300; ++i) {
             const auto edge = static_cast<float>(resolution);
             const auto c = [&] {
-                return i % 3 == 0 ? anywhere(random)
-                                  : (i % 3 == 1 ? 0.5f : 0.0f) * edge +
-                                        edge * static_cast<float>(steps(random) / (1 + i % 7));
+                if (i % 3 == 0) return anywhere(random);
+                const int cells = steps(random) / (1 + i % 7);
+                return edge * ((i % 3 == 1 ? 0.5f : 0.0f) + static_cast<float>(cells));
             };
             const ::octomap::point3d origin(c(), c(), c());
             const std::vector<::octomap::point3d> scan{

@@ -51,6 +51,7 @@ class FamilyMemory {
 /// In the child; does not return.
 [[noreturn]] void become(const std::vector<std::string>& command, int said) {
     std::vector<char*> arguments;
+    arguments.reserve(command.size() + 1);
     for (const std::string& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
     arguments.push_back(nullptr);
     const int nowhere = ::open("/dev/null", O_RDWR | O_CLOEXEC);

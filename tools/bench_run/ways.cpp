@@ -31,6 +31,7 @@ class Measurement {
 
     std::vector<Json> rows(const std::vector<WayInfo>& ways) {
         std::vector<Json> rows;
+        rows.reserve(ways.size() + 2);
         for (const WayInfo& way : ways) rows.push_back(row_of(way.name));
         rows.push_back(peer_row("RgbdPlane/4", unit_));
         if (!trajectory_.empty())
@@ -65,10 +66,10 @@ class Measurement {
         if (!is_live) trajectory_ = output / "trajectory.txt";
         Json row = cost_row(way, report.at(is_live ? "tracked" : "frames").get<std::int64_t>(),
                             1e3 * run.cpu_s, run.peak_rss_mb);
-        const Json wall_s = report.at("wall_s");
+        const Json& wall_s = report.at("wall_s");
         row["frames_per_s"] =
             row["frames"].get<double>() / (wall_s.is_number() ? wall_s.get<double>() : run.wall_s);
-        if (const Json stages = report.at("stages_ms"); stages.is_object())
+        if (const Json& stages = report.at("stages_ms"); stages.is_object())
             row["report_cpu_s"] = stages.at("report").at("cpu_total_s");
         return row;
     }

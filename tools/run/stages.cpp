@@ -52,7 +52,9 @@ std::string stages_markdown(const Json& report) {
     std::string out =
         "\n## Time\n\n| stage | median ms | p95 ms | CPU median ms | CPU p95 ms | times | CPU s in all |\n"
         "| --- | ---: | ---: | ---: | ---: | ---: | ---: |\n";
-    for (const auto& [stage, figures] : report.at("stages_ms").items()) {
+    for (const auto& item : report.at("stages_ms").items()) {
+        const std::string& stage = item.key();
+        const Json& figures = item.value();
         const double count = figures.at("count").get<double>();
         const bool is_known = count > 0;
         const auto cell = [&](const char* key, const char* pattern) {
