@@ -2,6 +2,8 @@
 #include "odometry/flow.hpp"
 
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <opencv2/video/tracking.hpp>
 
 #include "odometry/features.hpp"
@@ -9,10 +11,11 @@
 namespace planemap::odometry {
 namespace {
 
-/// Grey levels around a pixel, between pixels by bilinear interpolation, without their mean.
+/// Grey levels around a pixel, between pixels by bilinear interpolation, without their mean. Rows are filled
+/// up with zeros to whole vectors.
 class Patch {
   public:
-    /// False when the patch leaves the image.
+    /// False when the patch leaves the image. The image has a border, which may be read.
     bool cut(const cv::Mat& image, const cv::Point2f& centre) {
         const float left = centre.x - kRadius, top = centre.y - kRadius;
         if (!(left >= 0 && top >= 0)) return false;
@@ -20,28 +23,34 @@ class Patch {
         if (u + kSide >= image.cols || v + kSide >= image.rows) return false;
         const float a = left - static_cast<float>(u), b = top - static_cast<float>(v);
         const float weights[] = {(1 - a) * (1 - b), a * (1 - b), (1 - a) * b, a * b};
-        float sum = 0;
+        float sums[kRow] = {};
         for (int y = 0; y < kSide; ++y) {
             const unsigned char *upper = image.ptr(v + y) + u, *lower = image.ptr(v + y + 1) + u;
-            for (int x = 0; x < kSide; ++x) {
-                float& value = values_[y * kSide + x];
-                value = weights[0] * upper[x] + weights[1] * upper[x + 1] + weights[2] * lower[x] +
-                        weights[3] * lower[x + 1];
-                sum += value;
+            for (int x = 0; x < kRow; ++x) {
+                values_[y][x] = weights[0] * upper[x] + weights[1] * upper[x + 1] + weights[2] * lower[x] +
+                                weights[3] * lower[x + 1];
+                sums[x] += values_[y][x];
             }
         }
-        for (float& value : values_) value -= sum / (kSide * kSide);
+        float sum = 0;
+        for (int x = 0; x < kSide; ++x) sum += sums[x];
+        const float mean = sum / (kSide * kSide);
+        for (auto& row : values_)
+            for (int x = 0; x < kRow; ++x) row[x] = x < kSide ? row[x] - mean : 0.0f;
         return true;
     }
     float dot(const Patch& other) const {
+        float sums[kRow] = {};
+        for (int y = 0; y < kSide; ++y)
+            for (int x = 0; x < kRow; ++x) sums[x] += values_[y][x] * other.values_[y][x];
         float sum = 0;
-        for (int i = 0; i < kSide * kSide; ++i) sum += values_[i] * other.values_[i];
+        for (const float part : sums) sum += part;
         return sum;
     }
 
   private:
-    static constexpr int kRadius = 4, kSide = 2 * kRadius + 1;
-    float values_[kSide * kSide];
+    static constexpr int kRadius = 4, kSide = 2 * kRadius + 1, kRow = 12;
+    float values_[kSide][kRow];
 };
 
 /// True when both images show the same there: their patches correlate, whatever light and contrast. At half
@@ -55,14 +64,43 @@ bool looks_alike(const FlowPyramid& a, const cv::Point2f& at_a, const FlowPyrami
     return here.dot(there) >= kLeastCorrelation * std::sqrt(here.dot(here) * there.dot(there));
 }
 
+/// Derivatives by x and y of every pixel in turn, as OpenCV's flow has them, within a border of zeros. The
+/// image lies within a border of its own.
+cv::Mat scharr(const cv::Mat& image, int border_px) {
+    cv::Mat all(image.rows + 2 * border_px, image.cols + 2 * border_px, CV_16SC2, cv::Scalar::all(0));
+    cv::Mat inside = all(cv::Rect(border_px, border_px, image.cols, image.rows));
+    const auto step = static_cast<std::ptrdiff_t>(image.step);
+    for (int y = 0; y < image.rows; ++y) {
+        const unsigned char* const row = image.ptr(y);
+        auto* const out = inside.ptr<std::int16_t>(y);
+        for (std::ptrdiff_t x = 0; x < image.cols; ++x) {
+            const unsigned char *up = row + x - step, *at = row + x, *down = row + x + step;
+            out[2 * x] =
+                static_cast<std::int16_t>(3 * (up[1] + down[1] - up[-1] - down[-1]) + 10 * (at[1] - at[-1]));
+            out[2 * x + 1] =
+                static_cast<std::int16_t>(3 * (down[-1] + down[1] - up[-1] - up[1]) + 10 * (down[0] - up[0]));
+        }
+    }
+    return inside;
+}
+
 }  // namespace
 
-FlowPyramid make_flow_pyramid(const GrayImage& gray, int levels, int window_px, bool derivatives) {
+FlowPyramid make_flow_pyramid(const GrayImage& gray, int levels, int window_px) {
     FlowPyramid pyramid;
-    pyramid.has_derivatives = derivatives;
-    cv::buildOpticalFlowPyramid(as_mat(gray), pyramid.images, {window_px, window_px}, levels - 1, derivatives,
+    cv::buildOpticalFlowPyramid(as_mat(gray), pyramid.images, {window_px, window_px}, levels - 1, false,
                                 cv::BORDER_REFLECT_101, cv::BORDER_CONSTANT, false);
     return pyramid;
+}
+
+FlowPyramid with_derivatives(const FlowPyramid& pyramid, int window_px) {
+    FlowPyramid both;
+    both.has_derivatives = true;
+    for (int level = 0; level < pyramid.levels(); ++level) {
+        both.images.push_back(pyramid.level(level));
+        both.images.push_back(scharr(pyramid.level(level), window_px));
+    }
+    return both;
 }
 
 std::vector<char> track_flow(const FlowPyramid& from, const FlowPyramid& to,

@@ -10,7 +10,7 @@ namespace planemap::odometry {
 
 /// The image pyramid that tracking starts from or ends in.
 struct FlowPyramid {
-    std::vector<cv::Mat> images;  ///< OpenCV's layout: levels, with derivatives between them if asked for
+    std::vector<cv::Mat> images;  ///< OpenCV's layout: levels, with derivatives between them if it has any
     bool has_derivatives = false;
 
     bool empty() const { return images.empty(); }
@@ -21,9 +21,12 @@ struct FlowPyramid {
     int levels() const { return static_cast<int>(images.size()) / (has_derivatives ? 2 : 1); }
 };
 
-/// Levels of an image with borders for windows of window_px. With `derivatives`, tracking that starts from it
-/// is faster; copies the image.
-FlowPyramid make_flow_pyramid(const GrayImage& gray, int levels, int window_px, bool derivatives);
+/// Levels of an image with borders for windows of window_px; copies the image.
+FlowPyramid make_flow_pyramid(const GrayImage& gray, int levels, int window_px);
+
+/// The same levels, shared, with their derivatives: flow that starts from them is faster. Precondition: the
+/// pyramid was made for the same window and has no derivatives.
+FlowPyramid with_derivatives(const FlowPyramid& pyramid, int window_px);
 
 /// Pyramidal Lucas-Kanade. `to_pixels` holds the first guesses and becomes the result; the return says which
 /// points were found inside the image, where both images look alike. Noise does not: flow finds something

@@ -10,6 +10,8 @@ constexpr double kMinVisible = 0.6;    // share of a keyframe's points in the im
 constexpr double kReturnShare = 0.1;   // less of its points than of a present keyframe's must be tracked
 constexpr double kReturnReach = 0.8;   // of the motion that asks for a new keyframe
 constexpr double kReturnSigma = 0.02;  // metres and radians of the known pose
+constexpr std::size_t kScouts = 64;    // points that tell how many of all are seen
+constexpr double kShareSlack = 0.13;   // two deviations of a share that so many tell
 
 bool is_beyond(const Pose& motion, double metres, double radians) {
     return motion.translation().norm() > metres || rotation_angle(motion) > radians;
@@ -58,6 +60,21 @@ const LocalKeyframe* most_visible(const OdometryOptions& options, const LocalKey
     return best;
 }
 
+/// Whether some of a keyframe's points, spread over all of them, leave it open that so many of all are found.
+/// Most keyframes that are near show too little: to know that costs a fifth of tracking against them.
+bool may_see(const OdometryOptions& options, const LocalKeyframe& keyframe, const PreparedFrame& frame,
+             const Guess& guess, double needed) {
+    const std::size_t all = keyframe.points.size();
+    if (all < 2 * kScouts) return true;
+    std::vector<char> usable(all, 0);
+    for (std::size_t i = 0; i < kScouts; ++i) usable[i * all / kScouts] = 1;
+    const std::vector<cv::Point2f> pixels = keyframe.pixels();
+    const int found = count_points(options, keyframe, frame, guess,
+                                   {&keyframe.pyramid, &pixels, &usable, options.flow_levels});
+    const double share = found / static_cast<double>(kScouts);
+    return (share + kShareSlack) * static_cast<double>(all) >= needed;
+}
+
 }  // namespace
 
 bool can_be_tracked_against(const LocalKeyframe& keyframe, int min_points) {
@@ -95,9 +112,10 @@ std::optional<Return> find_other_keyframe(const OdometryOptions& options, const 
     guess.camera_from_keyframe = odom_from_camera.inverse() * keyframe->odom_from_keyframe;
     guess.information = Matrix6d::Identity() / (kReturnSigma * kReturnSigma);
     guess.velocity = velocity;
-    std::optional<Track> track = track_points(options, *keyframe, frame, guess, options.flow_levels);
     const double needed =
         (options.min_tracked_share - kReturnShare) * static_cast<double>(keyframe->points.size());
+    if (!may_see(options, *keyframe, frame, guess, needed)) return std::nullopt;
+    std::optional<Track> track = track_points(options, *keyframe, frame, guess, options.flow_levels);
     if (!track || track->degenerate || track->inliers < needed) return std::nullopt;
     return Return{keyframe->id, std::move(*track)};
 }

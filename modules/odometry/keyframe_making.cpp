@@ -73,7 +73,7 @@ LocalKeyframe make_local_keyframe(const OdometryOptions& options, const Prepared
     for (const cv::Point2f& pixel : select_corners(*frame.gray, *frame.depth, *frame.camera, corners))
         if (const auto point = make_point(options, frame, pixel, depth_from_color_time, motion.velocity))
             keyframe.points.push_back(*point);
-    keyframe.pyramid = make_flow_pyramid(*frame.gray, options.flow_wide_levels, options.flow_window_px, true);
+    keyframe.pyramid = with_derivatives(frame.pyramid, options.flow_window_px);
     return keyframe;
 }
 

@@ -14,6 +14,7 @@ constexpr double kMostPeriods = 1.5;  // beside its depth: the one before or aft
 constexpr std::int64_t kMostBeside_us = 100000;  // the same where frames were left out, or of the first one
 constexpr std::size_t kOneIn = 200;              // pixels may differ
 constexpr std::size_t kEnoughReadings = 100;     // for two depth images to be the same
+constexpr std::size_t kRun = 512;                // pixels that are compared without a look at the result
 constexpr int kContrast = 3;  // grey levels; without any, two images are alike that nobody repeated
 
 /// Whether an image shows anything.
@@ -25,6 +26,16 @@ bool has_contrast(const GrayImage& image) {
         if (apart > image.pixels.size() / kOneIn) return true;
     }
     return false;
+}
+
+/// In how many pixels of the run from `begin` on two images of one size are as asked.
+template <typename Pixel, typename Ask>
+std::size_t count_of_run(std::size_t begin, const std::vector<Pixel>& a, const std::vector<Pixel>& b,
+                         const Ask& ask) {
+    const std::size_t end = std::min(begin + kRun, a.size());
+    int count = 0;
+    for (std::size_t i = begin; i < end; ++i) count += ask(a[i], b[i]) ? 1 : 0;
+    return static_cast<std::size_t>(count);
 }
 
 template <typename Image>
@@ -49,8 +60,8 @@ bool is_repeated(const GrayImage& image, const GrayImage& last) {
     const std::size_t most = image.pixels.size() / kOneIn;
     std::size_t differ = 0;
     // Images that differ do so within the first rows: that is all they cost.
-    for (std::size_t i = 0; i < image.pixels.size() && differ <= most; ++i)
-        differ += image.pixels[i] != last.pixels[i] ? 1 : 0;
+    for (std::size_t i = 0; i < image.pixels.size() && differ <= most; i += kRun)
+        differ += count_of_run(i, image.pixels, last.pixels, [](auto a, auto b) { return a != b; });
     return differ <= most && has_contrast(image);
 }
 
@@ -58,9 +69,11 @@ bool is_repeated(const DepthImage& image, const DepthImage& last) {
     if (image.width != last.width || image.height != last.height || image.empty()) return false;
     const std::size_t most = image.pixels.size() / kOneIn;
     std::size_t differ = 0, readings = 0;
-    for (std::size_t i = 0; i < image.pixels.size() && differ <= most; ++i) {
-        readings += is_valid_depth(image.pixels[i]) || is_valid_depth(last.pixels[i]) ? 1 : 0;
-        differ += image.pixels[i] != last.pixels[i] ? 1 : 0;
+    for (std::size_t i = 0; i < image.pixels.size() && differ <= most; i += kRun) {
+        readings += count_of_run(i, image.pixels, last.pixels, [](std::uint16_t a, std::uint16_t b) {
+            return is_valid_depth(a) || is_valid_depth(b);
+        });
+        differ += count_of_run(i, image.pixels, last.pixels, [](auto a, auto b) { return a != b; });
     }
     return readings >= kEnoughReadings && differ <= std::min(most, readings / kOneIn);
 }

@@ -29,8 +29,7 @@ PreparedFrame prepare(const OdometryOptions& options, const OdometryFrame& frame
     prepared.readout_s = readout_s;
     if (frame.gray) {
         if (frame.color_utime != 0) prepared.color_offset_s = seconds(frame.color_utime - frame.utime);
-        prepared.pyramid =
-            make_flow_pyramid(*frame.gray, options.flow_wide_levels, options.flow_window_px, false);
+        prepared.pyramid = make_flow_pyramid(*frame.gray, options.flow_wide_levels, options.flow_window_px);
     }
     prepared.samples =
         sample_depth(*frame.depth, frame.camera->color, *frame.camera, options.surface_stride_px);

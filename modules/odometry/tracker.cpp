@@ -174,45 +174,23 @@ QuadraticTerm match_planes(std::span<const PlanarRegion> keyframe_regions,
 
 namespace {
 
-/// The pose from points that are already found: `pixels` of the keyframe's points with `found` set.
-std::optional<Track> align_points(const OdometryOptions& options, const LocalKeyframe& keyframe,
-                                  const PreparedFrame& frame, const Guess& guess,
-                                  std::vector<cv::Point2f> pixels, const std::vector<char>& found) {
-    std::vector<std::size_t> indices;
-    for (std::size_t i = 0; i < found.size(); ++i)
-        if (found[i]) indices.push_back(i);
-    if (static_cast<int>(indices.size()) < options.min_inliers) return std::nullopt;
-    const std::vector<PointTerm> terms = make_terms(options, keyframe, frame, guess, pixels, indices);
-    Alignment alignment = make_alignment(options, frame, guess);
-    alignment.points = terms;
-    AlignmentResult result = align_robustly(options, alignment, guess);
-    if (!is_supported(options, result, terms.size())) return std::nullopt;
+/// Where flow found the keyframe's points; one entry for each.
+struct PointFlow {
+    std::vector<cv::Point2f> pixels;
+    std::vector<char> found;
 
-    alignment.velocity = guess.velocity_at(result.camera_from_keyframe);
-    const std::vector<QuadraticTerm> geometry =
-        geometry_terms(options, keyframe, frame, result.camera_from_keyframe, alignment.velocity);
-    alignment.quadratics.insert(alignment.quadratics.end(), geometry.begin(), geometry.end());
-    const AlignmentResult joint = align(alignment, result.camera_from_keyframe);
-    if (is_supported(options, joint, terms.size()) && joint.inliers > 0.8 * result.inliers) result = joint;
+    explicit PointFlow(std::size_t points) : pixels(points), found(points, 0) {}
+    std::vector<std::size_t> found_points() const {
+        std::vector<std::size_t> indices;
+        for (std::size_t i = 0; i < found.size(); ++i)
+            if (found[i]) indices.push_back(i);
+        return indices;
+    }
+};
 
-    Track track;
-    track.by_features = true;
-    track.tried = static_cast<int>(terms.size());
-    track.inliers = result.inliers;
-    track.degenerate = is_degenerate(result.information, guess);
-    track.guess_information = guess.information;
-    track.pixels = std::move(pixels);
-    track.inlier.assign(keyframe.points.size(), 0);
-    for (std::size_t i = 0; i < indices.size(); ++i) track.inlier[indices[i]] = result.inlier[i];
-    track.alignment = std::move(result);
-    return track;
-}
-
-}  // namespace
-
-std::optional<Track> track_points(const OdometryOptions& options, const LocalKeyframe& keyframe,
-                                  const PreparedFrame& frame, const Guess& guess, const FlowSearch& search) {
-    if (frame.pyramid.empty() || search.from->empty()) return std::nullopt;
+/// Flow of the points that the guess puts into the image.
+PointFlow find_points(const OdometryOptions& options, const LocalKeyframe& keyframe,
+                      const PreparedFrame& frame, const Guess& guess, const FlowSearch& search) {
     const Pose color_from_keyframe =
         pose_from_twist(frame.color_offset_s * guess.velocity) * guess.camera_from_keyframe;
     const PinholeCamera& camera = frame.camera->color;
@@ -231,13 +209,64 @@ std::optional<Track> track_points(const OdometryOptions& options, const LocalKey
     const std::vector<char> found_here =
         track_flow(*search.from, frame.pyramid, from, to, options.flow_window_px, search.levels,
                    options.flow_iterations);
-    std::vector<cv::Point2f> pixels(keyframe.points.size());
-    std::vector<char> found(keyframe.points.size(), 0);
+    PointFlow flow(keyframe.points.size());
     for (std::size_t i = 0; i < indices.size(); ++i) {
-        pixels[indices[i]] = to[i];
-        found[indices[i]] = found_here[i];
+        flow.pixels[indices[i]] = to[i];
+        flow.found[indices[i]] = found_here[i];
     }
-    return align_points(options, keyframe, frame, guess, std::move(pixels), found);
+    return flow;
+}
+
+/// The pose from points that are already found.
+std::optional<Track> align_points(const OdometryOptions& options, const LocalKeyframe& keyframe,
+                                  const PreparedFrame& frame, const Guess& guess, PointFlow flow) {
+    const std::vector<std::size_t> indices = flow.found_points();
+    if (static_cast<int>(indices.size()) < options.min_inliers) return std::nullopt;
+    const std::vector<PointTerm> terms = make_terms(options, keyframe, frame, guess, flow.pixels, indices);
+    Alignment alignment = make_alignment(options, frame, guess);
+    alignment.points = terms;
+    AlignmentResult result = align_robustly(options, alignment, guess);
+    if (!is_supported(options, result, terms.size())) return std::nullopt;
+
+    alignment.velocity = guess.velocity_at(result.camera_from_keyframe);
+    const std::vector<QuadraticTerm> geometry =
+        geometry_terms(options, keyframe, frame, result.camera_from_keyframe, alignment.velocity);
+    alignment.quadratics.insert(alignment.quadratics.end(), geometry.begin(), geometry.end());
+    const AlignmentResult joint = align(alignment, result.camera_from_keyframe);
+    if (is_supported(options, joint, terms.size()) && joint.inliers > 0.8 * result.inliers) result = joint;
+
+    Track track;
+    track.by_features = true;
+    track.tried = static_cast<int>(terms.size());
+    track.inliers = result.inliers;
+    track.degenerate = is_degenerate(result.information, guess);
+    track.guess_information = guess.information;
+    track.pixels = std::move(flow.pixels);
+    track.inlier.assign(keyframe.points.size(), 0);
+    for (std::size_t i = 0; i < indices.size(); ++i) track.inlier[indices[i]] = result.inlier[i];
+    track.alignment = std::move(result);
+    return track;
+}
+
+}  // namespace
+
+std::optional<Track> track_points(const OdometryOptions& options, const LocalKeyframe& keyframe,
+                                  const PreparedFrame& frame, const Guess& guess, const FlowSearch& search) {
+    if (frame.pyramid.empty() || search.from->empty()) return std::nullopt;
+    return align_points(options, keyframe, frame, guess,
+                        find_points(options, keyframe, frame, guess, search));
+}
+
+int count_points(const OdometryOptions& options, const LocalKeyframe& keyframe, const PreparedFrame& frame,
+                 const Guess& guess, const FlowSearch& search) {
+    if (frame.pyramid.empty() || search.from->empty()) return 0;
+    const PointFlow flow = find_points(options, keyframe, frame, guess, search);
+    const std::vector<PointTerm> terms =
+        make_terms(options, keyframe, frame, guess, flow.pixels, flow.found_points());
+    Alignment alignment = make_alignment(options, frame, guess);
+    alignment.points = terms;
+    const AlignmentResult result = align(alignment, guess.camera_from_keyframe);
+    return result.converged ? result.inliers : 0;
 }
 
 std::optional<Track> track_points(const OdometryOptions& options, const LocalKeyframe& keyframe,

@@ -74,7 +74,11 @@ struct FlowSearch {
 std::optional<Track> track_points(const OdometryOptions& options, const LocalKeyframe& keyframe,
                                   const PreparedFrame& frame, const Guess& guess, const FlowSearch& search);
 
-/// The same with flow from the keyframe's own image, on so many pyramid levels.
+/// How many of the usable points are found where one motion near the guess has them; without the pose.
+int count_points(const OdometryOptions& options, const LocalKeyframe& keyframe, const PreparedFrame& frame,
+                 const Guess& guess, const FlowSearch& search);
+
+/// The same as the first with flow from the keyframe's own image, on so many pyramid levels.
 std::optional<Track> track_points(const OdometryOptions& options, const LocalKeyframe& keyframe,
                                   const PreparedFrame& frame, const Guess& guess, int levels);
 

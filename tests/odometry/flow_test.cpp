@@ -5,7 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <opencv2/video/tracking.hpp>
 #include <random>
+
+#include "odometry/features.hpp"
 
 namespace planemap::odometry {
 namespace {
@@ -31,7 +34,8 @@ GrayImage blobs(double shift, double contrast, double noise, std::uint64_t seed)
 
 /// Share of points found, and of all points those found within a pixel of the true shift of 2.
 std::pair<double, double> track(const GrayImage& from, const GrayImage& to) {
-    const FlowPyramid a = make_flow_pyramid(from, 3, 11, true), b = make_flow_pyramid(to, 3, 11, false);
+    const FlowPyramid a = with_derivatives(make_flow_pyramid(from, 3, 11), 11),
+                      b = make_flow_pyramid(to, 3, 11);
     std::vector<cv::Point2f> before;
     for (int v = 20; v < kHeight - 20; v += 10)
         for (int u = 20; u < kWidth - 20; u += 10)
@@ -65,14 +69,26 @@ TEST(FlowTest, FindsNothingInTheDark) {
 
 TEST(FlowTest, LevelsAreTheSameWithDerivatives) {
     const GrayImage image = blobs(0, 30, 1, 1);
-    const FlowPyramid with = make_flow_pyramid(image, 3, 11, true),
-                      without = make_flow_pyramid(image, 3, 11, false);
+    const FlowPyramid without = make_flow_pyramid(image, 3, 11), with = with_derivatives(without, 11);
     ASSERT_EQ(with.levels(), 3);
     ASSERT_EQ(without.levels(), 3);
     for (int i = 0; i < 3; ++i) {
         ASSERT_EQ(with.level(i).size(), without.level(i).size());
         EXPECT_EQ(with.level(i).cols, kWidth >> i);
         EXPECT_EQ(with.level(i).at<unsigned char>(10, 10), without.level(i).at<unsigned char>(10, 10));
+    }
+}
+
+TEST(FlowTest, DerivativesAreThoseThatFlowMakesItself) {
+    const GrayImage image = blobs(0, 30, 4, 1);
+    const FlowPyramid pyramid = with_derivatives(make_flow_pyramid(image, 3, 11), 11);
+    std::vector<cv::Mat> expected;
+    cv::buildOpticalFlowPyramid(as_mat(image), expected, {11, 11}, 2, true);
+    ASSERT_EQ(pyramid.images.size(), expected.size());
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+        ASSERT_EQ(pyramid.images[i].type(), expected[i].type());
+        ASSERT_EQ(pyramid.images[i].size(), expected[i].size());
+        EXPECT_EQ(cv::norm(pyramid.images[i], expected[i], cv::NORM_INF), 0) << i;
     }
 }
 

@@ -90,6 +90,16 @@ TEST(KeyframeChoiceTest, TrackingReturnsToTheNearestOtherKeyframe) {
     EXPECT_LT(pose_error(other->track.alignment.camera_from_keyframe, right_by(-0.02)), 3e-3);
 }
 
+TEST(KeyframeChoiceTest, AKeyframeOfWhichNothingIsSeenIsNotReturnedTo) {
+    const SeenFrame origin(Pose::Identity()), right(right_by(0.3)), plain(Pose::Identity(), 0, false);
+    LocalKeyframes keyframes(5);
+    keyframes.add(origin.keyframe(0));
+    keyframes.add(right.keyframe(1, right_by(0.3)));
+    const Located here = located_at(Pose::Identity());
+    EXPECT_TRUE(find_other_keyframe(kOptions, keyframes, origin.frame, here, Twist::Zero()));
+    EXPECT_FALSE(find_other_keyframe(kOptions, keyframes, plain.frame, here, Twist::Zero()));
+}
+
 TEST(KeyframeChoiceTest, NeitherThePresentNorAFarOneIsReturnedTo) {
     const SeenFrame origin(Pose::Identity()), far(right_by(0.8));
     LocalKeyframes keyframes(5);

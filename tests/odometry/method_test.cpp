@@ -24,6 +24,7 @@ class MethodTest : public ::testing::TestWithParam<std::string> {
   protected:
     void SetUp() override {
         options_.method = GetParam();
+        first_ = wall_from(Pose::Identity(), 0);
         method_ = make_method(options_);
         LocalKeyframe keyframe = first_->keyframe();
         method_->begin(first_->frame);
@@ -36,7 +37,7 @@ class MethodTest : public ::testing::TestWithParam<std::string> {
     }
 
     OdometryOptions options_;
-    std::unique_ptr<SeenFrame> first_ = wall_from(Pose::Identity(), 0);
+    std::unique_ptr<SeenFrame> first_;
     CameraMotion motion_{options_};
     LocalKeyframes keyframes_{3};
     Relocaliser relocaliser_{options_};

@@ -60,6 +60,24 @@ TEST_F(TrackerTest, PointsThatAreNotUsableAreNotFollowed) {
     for (std::size_t i = usable.size() / 2; i < usable.size(); ++i) EXPECT_EQ(track->inlier[i], 0);
 }
 
+TEST_F(TrackerTest, PointsAreCountedAsTheyAreTracked) {
+    const SeenFrame seen(small_motion(1)), black(black_frame());
+    const std::vector<cv::Point2f> pixels = keyframe_.pixels();
+    std::vector<char> usable(pixels.size(), 0);
+    const FlowSearch search{&keyframe_.pyramid, &pixels, &usable, 3};
+    EXPECT_EQ(count_points(options_, keyframe_, seen.frame, loose_guess(), search), 0) << "none usable";
+    for (std::size_t i = 0; i < usable.size(); i += 2) usable[i] = 1;
+    const auto track = track_points(options_, keyframe_, seen.frame, loose_guess(), search);
+    ASSERT_TRUE(track);
+    const int counted = count_points(options_, keyframe_, seen.frame, loose_guess(), search);
+    EXPECT_NEAR(counted, track->inliers, 0.05 * track->tried);
+    EXPECT_LT(count_points(options_, keyframe_, black.frame, loose_guess(), search), options_.min_inliers);
+    EXPECT_EQ(count_points(options_, LocalKeyframe{}, seen.frame, loose_guess(), search), 0);
+    SeenFrame colourless(Pose::Identity());
+    colourless.forget_color();
+    EXPECT_EQ(count_points(options_, keyframe_, colourless.frame, loose_guess(), search), 0);
+}
+
 TEST_F(TrackerTest, NothingIsTrackedInNothing) {
     const SeenFrame black(black_frame());
     EXPECT_FALSE(track_points(options_, keyframe_, black.frame, loose_guess(), 3));
