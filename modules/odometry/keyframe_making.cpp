@@ -77,19 +77,53 @@ LocalKeyframe make_local_keyframe(const OdometryOptions& options, const Prepared
     return keyframe;
 }
 
-Keyframe make_keyframe(const OdometryOptions& options, const PreparedFrame& frame,
-                       const FrameMotion& motion) {
+namespace {
+
+/// make_keyframe() without features.
+Keyframe make_undescribed(const PreparedFrame& frame) {
     Keyframe keyframe;
     keyframe.utime = keyframe.pose_utime = frame.utime;
     keyframe.noise = frame.camera->noise;
     keyframe.depth_min_m = frame.camera->depth_min_m;
     keyframe.depth_max_m = frame.camera->depth_max_m;
     keyframe.regions = frame.regions;
-    if (!frame.gray) return keyframe;
-    keyframe.features =
-        describe(*frame.gray, *frame.depth, *frame.camera, options.max_descriptors, options.max_depth_spread);
-    put_at_depth_time(keyframe.features, frame, motion);
     return keyframe;
+}
+
+std::vector<Feature> make_features(const OdometryOptions& options, const PreparedFrame& frame,
+                                   const FrameMotion& motion) {
+    if (!frame.gray) return {};
+    std::vector<Feature> features =
+        describe(*frame.gray, *frame.depth, *frame.camera, options.max_descriptors, options.max_depth_spread);
+    put_at_depth_time(features, frame, motion);
+    return features;
+}
+
+}  // namespace
+
+Keyframe make_keyframe(const OdometryOptions& options, const PreparedFrame& frame,
+                       const FrameMotion& motion) {
+    Keyframe keyframe = make_undescribed(frame);
+    keyframe.features = make_features(options, frame, motion);
+    return keyframe;
+}
+
+UndescribedKeyframe::UndescribedKeyframe(const PreparedFrame& frame, const FrameMotion& motion)
+    : keyframe(make_undescribed(frame)), depth_(*frame.depth), camera_(*frame.camera), motion_(motion) {
+    if (frame.gray) gray_ = *frame.gray;
+    frame_.utime = frame.utime;
+    frame_.color_offset_s = frame.color_offset_s;
+    frame_.readout_s = frame.readout_s;
+    frame_.gray = frame.gray ? &gray_ : nullptr;
+    frame_.depth = &depth_;
+    frame_.camera = &camera_;
+    frame_.regions = frame.regions;
+}
+
+Keyframe UndescribedKeyframe::described(const OdometryOptions& options) const {
+    Keyframe whole = keyframe;
+    whole.features = make_features(options, frame_, motion_);
+    return whole;
 }
 
 }  // namespace planemap::odometry

@@ -24,4 +24,26 @@ LocalKeyframe make_local_keyframe(const OdometryOptions& options, const Prepared
 /// relocalisation. Id, poses and edge are left to the caller.
 Keyframe make_keyframe(const OdometryOptions& options, const PreparedFrame& frame, const FrameMotion& motion);
 
+/// A keyframe that is described later than it is made: half of what a keyframe costs.
+class UndescribedKeyframe {
+  public:
+    /// Copies the frame's images. Id, poses and edge of `keyframe` are left to the caller.
+    UndescribedKeyframe(const PreparedFrame& frame, const FrameMotion& motion);
+    UndescribedKeyframe(const UndescribedKeyframe&) = delete;
+    UndescribedKeyframe& operator=(const UndescribedKeyframe&) = delete;
+
+    Keyframe keyframe;
+
+    bool has_color() const { return frame_.gray != nullptr; }
+    /// The keyframe with the features that make_keyframe() gives it.
+    Keyframe described(const OdometryOptions& options) const;
+
+  private:
+    GrayImage gray_;
+    DepthImage depth_;
+    CameraInfo camera_;
+    PreparedFrame frame_;  ///< of these
+    FrameMotion motion_;
+};
+
 }  // namespace planemap::odometry

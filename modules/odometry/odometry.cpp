@@ -2,6 +2,7 @@
 #include "odometry/odometry.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "odometry/camera_motion.hpp"
 #include "odometry/chains.hpp"
@@ -28,6 +29,7 @@ class Odometry::State {
           method_(make_method(options)) {}
 
     OdometryResult process(const OdometryFrame& input);
+    std::optional<Keyframe> finish();
     void resume(std::span<const Keyframe> keyframes);
     void start_after(int id);
     bool hear(const MotionPrior& prior) { return priors_.hear(prior); }
@@ -45,9 +47,11 @@ class Odometry::State {
     OdometryResult lose(PreparedFrame& frame);
     OdometryResult follow(PreparedFrame& frame, Located& located);
     std::optional<Keyframe> begin(PreparedFrame& frame);
-    std::optional<Keyframe> change_keyframe(PreparedFrame& frame, const Located& located);
-    Keyframe add_keyframe(PreparedFrame& frame, LocalKeyframe local, const Located* located,
-                          const FrameMotion& motion);
+    void change_keyframe(PreparedFrame& frame, const Located& located);
+    Keyframe& add_keyframe(PreparedFrame& frame, LocalKeyframe local, const Located* located,
+                           const FrameMotion& motion);
+    void describe_waiting();
+    Keyframe described_at_once();
     OdometryEstimate estimate_at(const Keyframe& keyframe) const;
     Matrix6d measured_covariance(const Located& located, const Guess& predicted) const;
     Matrix6d covariance_of_moment(const Located& located) const;
@@ -62,6 +66,8 @@ class Odometry::State {
     CameraMotion motion_;
     LocalKeyframes keyframes_;
     Relocaliser relocaliser_;
+    std::unique_ptr<UndescribedKeyframe> waiting_;  ///< the frame before's, to be described in this one
+    std::optional<Keyframe> described_;             ///< and not given to the caller yet
     MotionPriors priors_;
     std::unique_ptr<Method> method_;
     NewsWatch watch_;
@@ -74,6 +80,7 @@ class Odometry::State {
 
 OdometryResult Odometry::State::process(const OdometryFrame& input) {
     check(input);
+    describe_waiting();
     const News news = watch_.see(input);
     OdometryResult result;
     if (news.any() || keyframes_.empty()) {
@@ -90,6 +97,7 @@ OdometryResult Odometry::State::process(const OdometryFrame& input) {
     } else {
         result.estimate = stay(input.utime);
     }
+    result.described = std::exchange(described_, std::nullopt);
     result.news = news;
     result.estimate.utime = result.estimate.pose_utime = input.utime;
     result.estimate.chain = chains_.of(result.estimate.keyframe_id);
@@ -159,6 +167,7 @@ void Odometry::State::resume(std::span<const Keyframe> keyframes) {
 }
 
 void Odometry::State::start_after(int id) {
+    describe_waiting();
     next_id_ = std::max(next_id_, id + 1 + kIdsLeftOut);
     keyframes_.clear();
     relocaliser_.clear();
@@ -183,7 +192,8 @@ OdometryResult Odometry::State::find_again(PreparedFrame& frame) {
     LocalKeyframe local = make_local_keyframe(options_, frame, motion);
     if (!can_be_tracked_against(local, options_.min_inliers)) return result;
     resumed_ = false;
-    Keyframe keyframe = add_keyframe(frame, std::move(local), &*located, motion);
+    add_keyframe(frame, std::move(local), &*located, motion);
+    Keyframe keyframe = described_at_once();
     result.estimate = estimate_at(keyframe);
     result.estimate.features = located->track.tried;
     result.estimate.inliers = located->track.inliers;
@@ -235,7 +245,7 @@ OdometryResult Odometry::State::follow(PreparedFrame& frame, Located& located) {
     estimate.velocity = -motion_.velocity();  // of the camera in the world, not of the world in its frame
     if (may_become_keyframe() && (located.relocalised || has_moved(options_, located) ||
                                   method_->wants_keyframe(frame, located, keyframes_.current())))
-        result.keyframe = change_keyframe(frame, located);
+        change_keyframe(frame, located);
     else
         method_->go_on_from(frame, located.track);
     return result;
@@ -288,16 +298,17 @@ std::optional<Keyframe> Odometry::State::begin(PreparedFrame& frame) {
     unseen_steps_ = 0;
     method_->begin(frame);
     keyframes_.clear();
-    return add_keyframe(frame, std::move(local), nullptr, at_rest);
+    add_keyframe(frame, std::move(local), nullptr, at_rest);
+    return described_at_once();
 }
 
 /// Goes over to another keyframe that is known, else to a new one of this frame, where that is of use.
-std::optional<Keyframe> Odometry::State::change_keyframe(PreparedFrame& frame, const Located& located) {
+void Odometry::State::change_keyframe(PreparedFrame& frame, const Located& located) {
     if (const std::optional<Return> other =
             find_other_keyframe(options_, keyframes_, frame, located, motion_.velocity())) {
         keyframes_.renew(other->id);
         method_->go_on_from(frame, other->track);
-        return std::nullopt;
+        return;
     }
     const Track& track = located.track;
     const FrameMotion motion{motion_.velocity(),
@@ -306,19 +317,20 @@ std::optional<Keyframe> Odometry::State::change_keyframe(PreparedFrame& frame, c
     if (!can_be_tracked_against(local, options_.min_inliers) ||
         !is_worth_it(options_, keyframes_.current(), frame, located, local)) {
         method_->go_on_from(frame, track);
-        return std::nullopt;
+        return;
     }
-    Keyframe keyframe = add_keyframe(frame, std::move(local), &located, motion);
+    Keyframe& keyframe = add_keyframe(frame, std::move(local), &located, motion);
     // Where all is seen as loop closures have it, so that edges and closures weigh alike in the graph.
     keyframe.covariance =
         located.track.degenerate ? last_measured_ : assumed_covariance(located.track.alignment);
-    return keyframe;
 }
 
 /// With an edge from where the frame was located; nullptr: without one, at the last pose, and a chain begins.
-Keyframe Odometry::State::add_keyframe(PreparedFrame& frame, LocalKeyframe local, const Located* located,
-                                       const FrameMotion& motion) {
-    Keyframe keyframe = make_keyframe(options_, frame, motion);
+/// It then waits to be described. Precondition: none waits.
+Keyframe& Odometry::State::add_keyframe(PreparedFrame& frame, LocalKeyframe local, const Located* located,
+                                        const FrameMotion& motion) {
+    waiting_ = std::make_unique<UndescribedKeyframe>(frame, motion);
+    Keyframe& keyframe = waiting_->keyframe;
     keyframe.id = local.id = next_id_++;
     local.utime = frame.utime;
     keyframe.odom_from_camera = local.odom_from_keyframe =
@@ -329,10 +341,26 @@ Keyframe Odometry::State::add_keyframe(PreparedFrame& frame, LocalKeyframe local
         keyframe.covariance = located->covariance();
     }
     keyframe.chain = chains_.add(keyframe.id, keyframe.previous_id);
-    if (frame.gray) relocaliser_.add(keyframe);
     method_->go_on_from(frame, local);
     keyframes_.add(std::move(local));
     return keyframe;
+}
+
+/// The keyframe that waits is described, and the relocaliser knows it.
+Keyframe Odometry::State::described_at_once() {
+    Keyframe keyframe = waiting_->described(options_);
+    if (waiting_->has_color()) relocaliser_.add(keyframe);
+    waiting_.reset();
+    return keyframe;
+}
+
+void Odometry::State::describe_waiting() {
+    if (waiting_) described_ = described_at_once();
+}
+
+std::optional<Keyframe> Odometry::State::finish() {
+    describe_waiting();
+    return std::exchange(described_, std::nullopt);
 }
 
 Odometry::Odometry(const OdometryOptions& options) {
@@ -353,6 +381,10 @@ bool Odometry::hear(const MotionPrior& prior) {
 
 void Odometry::start_after(int id) {
     state_->start_after(id);
+}
+
+std::optional<Keyframe> Odometry::finish() {
+    return state_->finish();
 }
 
 OdometryResult Odometry::process(const OdometryFrame& frame) {

@@ -46,7 +46,12 @@ struct OdometryResult {
     PriorUse prior = PriorUse::kNone;
     /// Of the depth image's moment (pose_utime = utime).
     OdometryEstimate estimate;
-    /// Set when the frame became a keyframe. The estimate is still relative to the one before.
+    /// The frame before, or one before that which had no result, became a keyframe, and is described by now:
+    /// not in its own call, which tracks it and makes of it what the next frame is tracked against, so that
+    /// none takes long. Of the frames that came since, this call's estimate is the first that may name it.
+    std::optional<Keyframe> described;
+    /// Set when the frame itself became a keyframe and is described already: one without an edge, or the
+    /// first after resume(). The estimate of one that had a pose is still relative to the one before.
     std::optional<Keyframe> keyframe;
 };
 
@@ -87,6 +92,9 @@ class Odometry {
     /// Throws std::invalid_argument when depth or camera is missing, an image has not the colour camera's
     /// size, or a new camera is not valid; the state is then as it was.
     OdometryResult process(const OdometryFrame& frame);
+
+    /// After the last frame: the keyframe that waits for the next one to be described, if one does.
+    std::optional<Keyframe> finish();
 
   private:
     class State;

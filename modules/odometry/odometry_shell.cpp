@@ -151,16 +151,16 @@ void OdometryShell::process(const FrameWithRegions& input) {
     add_colour(frame, in);
     if (input.regions) in.regions = input.regions->regions;
     const OdometryResult result = track(in);
+    if (result.described) {
+        publish_keyframe(*result.described);
+        looks_.begin(*result.described);
+    }
     bus_.publish(messages::channels::kOdometry,
                  messages::to_message(result.estimate, odometry_seq_++, bus_.session()));
     count(result.news);
     count(result.prior);
-    if (result.keyframe) frames_.add(*result.keyframe);
+    if (result.keyframe) publish_keyframe(*result.keyframe);
     publish_body(result.estimate, frame.camera());
-    if (result.keyframe) {
-        newest_id_ = std::max(newest_id_, result.keyframe->id);
-        outbox_.publish(*result.keyframe);
-    }
     if (result.news.depth == News::Image::kNew) publish_look(result, in.regions);
     status_.published(result.estimate.utime, messages::now_us());
     const bool is_lost = result.estimate.status == TrackingStatus::kLost;
@@ -219,8 +219,15 @@ void OdometryShell::publish_body(OdometryEstimate estimate, const CameraInfo& ca
                  messages::to_rigid_transform(body_.body_from_camera(), estimate.utime));
 }
 
+void OdometryShell::publish_keyframe(const Keyframe& keyframe) {
+    frames_.add(keyframe);
+    newest_id_ = std::max(newest_id_, keyframe.id);
+    outbox_.publish(keyframe);
+}
+
 void OdometryShell::finish() {
     pairing_.finish();
+    if (const std::optional<Keyframe> last = odometry_.finish()) publish_keyframe(*last);
 }
 
 }  // namespace planemap::odometry

@@ -60,6 +60,7 @@ class OdometryShell : public messages::Shell {
   private:
     void on_trajectory(const messages::RawMessage& message);
     void on_map(const messages::RawMessage& message);
+    void publish_keyframe(const Keyframe& keyframe);
     void publish_body(OdometryEstimate estimate, const CameraInfo& camera);
     void process(const FrameWithRegions& input);
     OdometryResult track(const OdometryFrame& frame);

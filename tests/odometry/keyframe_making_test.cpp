@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
+
 #include "odometry/alignment.hpp"
 #include "seen_frame.hpp"
 
@@ -103,6 +105,28 @@ TEST(KeyframeMakingTest, FeaturesAreForTheDepthImagesTime) {
     ASSERT_GT(at_rest.features.size(), 50u);
     for (std::size_t i = 0; i < moving.features.size(); ++i)
         EXPECT_NEAR(moving.features[i].point.x(), at_rest.features[i].point.x() - 0.01f, 1e-5f);
+}
+
+TEST(KeyframeMakingTest, AKeyframeThatIsDescribedLaterIsTheSame) {
+    auto seen = std::make_unique<SeenFrame>(Pose::Identity());
+    FrameMotion motion;
+    motion.velocity << 0, 0, 0, 0, 0.5, 0;
+    motion.color_offset_s = 0.01;
+    const Keyframe at_once = make_keyframe(kOptions, seen->frame, motion);
+    UndescribedKeyframe waiting(seen->frame, motion);
+    EXPECT_TRUE(waiting.has_color());
+    EXPECT_TRUE(waiting.keyframe.features.empty());
+    waiting.keyframe.id = 7;
+    seen.reset();
+    const Keyframe later = waiting.described(kOptions);
+    EXPECT_EQ(later.id, 7);
+    EXPECT_EQ(later.utime, at_once.utime);
+    ASSERT_EQ(later.features.size(), at_once.features.size());
+    ASSERT_GT(later.features.size(), 50u);
+    for (std::size_t i = 0; i < later.features.size(); ++i) {
+        EXPECT_EQ(later.features[i].descriptor, at_once.features[i].descriptor);
+        EXPECT_EQ(later.features[i].point, at_once.features[i].point);
+    }
 }
 
 }  // namespace

@@ -31,6 +31,11 @@ Pose sideways(int frame) {
     return room_from_camera;
 }
 
+/// Keyframes that a result gives.
+int keyframes_of(const OdometryResult& result) {
+    return (result.described ? 1 : 0) + (result.keyframe ? 1 : 0);
+}
+
 class Room : public ::testing::Test {
   protected:
     /// With a sensor's noise: two images of a still view differ.
@@ -140,7 +145,7 @@ TEST_F(Room, NewsThatDoNotSayWhereItIsAreWaitedForAsLongAsItCannotBeFar) {
 TEST_F(Room, NothingButRepeatsIsOneKeyframe) {
     const RenderedFrame held = view(0);
     int keyframes = 0;
-    for (int i = 0; i < 60; ++i) keyframes += feed_as_it_is(held, (i + 1) * kPeriod).keyframe ? 1 : 0;
+    for (int i = 0; i < 60; ++i) keyframes += keyframes_of(feed_as_it_is(held, (i + 1) * kPeriod));
     EXPECT_EQ(keyframes, 1);
 }
 
@@ -154,16 +159,20 @@ TEST_F(Room, FollowsAKnownMotion) {
         if (i > 0) {
             EXPECT_GT(result.estimate.covariance.diagonal().minCoeff(), 0);
         }
-        keyframes += result.keyframe.has_value();
+        keyframes += keyframes_of(result);
     }
     EXPECT_LT(keyframes, 30);
 }
 
 TEST_F(Room, KeyframesAreChainedByTheirEdges) {
     std::vector<Keyframe> keyframes;
-    for (int i = 0; i < 30; ++i)
-        if (auto result = feed(render_room(camera_, sideways(i)), (i + 1) * kPeriod); result.keyframe)
-            keyframes.push_back(*result.keyframe);
+    for (int i = 0; i < 30; ++i) {
+        const OdometryResult result = feed(render_room(camera_, sideways(i)), (i + 1) * kPeriod);
+        if (result.described) keyframes.push_back(*result.described);
+        if (result.keyframe) keyframes.push_back(*result.keyframe);
+        ASSERT_FALSE(keyframes.empty());
+        EXPECT_LE(result.estimate.keyframe_id, keyframes.back().id) << "none is named before it is known";
+    }
     ASSERT_GT(keyframes.size(), 1u);
     for (std::size_t i = 1; i < keyframes.size(); ++i) {
         const Keyframe& keyframe = keyframes[i];
@@ -173,6 +182,21 @@ TEST_F(Room, KeyframesAreChainedByTheirEdges) {
         expect_near(previous.odom_from_camera * keyframe.previous_from_camera, keyframe.odom_from_camera,
                     1e-6, 1e-6);
     }
+}
+
+TEST_F(Room, TheLastFramesKeyframeIsGivenAtTheEnd) {
+    EXPECT_FALSE(odometry_.finish()) << "no frame";
+    int i = 0;
+    std::optional<Keyframe> last;
+    for (; i < 30 && !last; ++i) {
+        feed(render_room(camera_, sideways(i)), (i + 1) * kPeriod);
+        last = odometry_.finish();
+    }
+    ASSERT_TRUE(last);
+    EXPECT_EQ(last->utime, i * kPeriod);
+    EXPECT_GT(last->features.size(), 50u);
+    EXPECT_FALSE(odometry_.finish()) << "given once";
+    EXPECT_FALSE(feed(render_room(camera_, sideways(i)), (i + 1) * kPeriod).described);
 }
 
 TEST_F(Room, SameInputSamePoses) {
@@ -251,7 +275,7 @@ TEST_F(Room, StandingStillBeforeABareWallMakesNoKeyframes) {
             const OdometryResult result =
                 odometry.process({utime, utime, &frame.gray, &frame.depth, &camera_, regions});
             EXPECT_NE(result.estimate.status, TrackingStatus::kLost) << "frame " << i;
-            keyframes += result.keyframe.has_value();
+            keyframes += keyframes_of(result);
         }
         EXPECT_LE(keyframes, 2) << "noise of " << shade_sigma << " levels";
     }
@@ -261,9 +285,9 @@ TEST_F(Room, LightThatGoesOnMakesAKeyframe) {
     const RenderedFrame dark = render_room(camera_, Pose::Identity(), false);
     const RenderedFrame lit = render_room(camera_, Pose::Identity(), true);
     int keyframes = 0;
-    for (int i = 0; i < 30; ++i) keyframes += feed(dark, (i + 1) * kPeriod, false).keyframe.has_value();
+    for (int i = 0; i < 30; ++i) keyframes += keyframes_of(feed(dark, (i + 1) * kPeriod, false));
     EXPECT_EQ(keyframes, 1);
-    for (int i = 30; i < 60; ++i) keyframes += feed(lit, (i + 1) * kPeriod).keyframe.has_value();
+    for (int i = 30; i < 60; ++i) keyframes += keyframes_of(feed(lit, (i + 1) * kPeriod));
     EXPECT_EQ(keyframes, 2) << "there are corners to follow now";
     EXPECT_EQ(feed(lit, 61 * kPeriod).estimate.status, TrackingStatus::kTracked);
 }
