@@ -184,6 +184,9 @@ Sequence open_noise(std::size_t frames) {
 
 const std::vector<SequenceInfo>& known_sequences() {
     static const std::vector<SequenceInfo> kSequences = benchmark::with_recordings({
+        {"icsl_corridor", "Xtion, hand-held, a corridor: long walls from 1 to 8 m", "", "", 55},
+        {"aims_robot", "RealSense on a low robot, a classroom's floor", "", "", 80},
+        {"d435_stills", "RealSense D435, single views of boxes, walls and chairs", "", "", 10},
         {"sim:office", "the simulator's room with a Kinect's noise, exact truth", "office?frames=900", "",
          60},
         {"plane_labels", "three synthetic living-room images with true labels", "", "", 3},
