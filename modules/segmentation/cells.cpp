@@ -12,7 +12,6 @@
 #include "segmentation/merging.hpp"
 #include "segmentation/pixel_labels.hpp"
 #include "segmentation/region_sums.hpp"
-#include "segmentation/shape.hpp"
 
 namespace planemap::segmentation {
 
@@ -23,12 +22,12 @@ class CellSegmenter : public Segmenter {
     CellSegmenter(const CellOptions& options, const CellKernels& kernels)
         : options_(options), grid_(kernels), grower_(options) {}
 
-    void segment(const DepthImage& depth, const CameraInfo& camera, Segmentation& out) override {
-        check_input(depth, camera);
+  private:
+    void find(const DepthImage& depth, const CameraInfo& camera, Segmentation& out) override {
         min_pixels_ = std::max(3.0, options_.min_region_fraction * depth.width * depth.height);
         grid_.reset(depth, rules_for(camera));
         grid_.fit();
-        grower_.grow({grid_.columns(), grid_.rows(), kCellPx / camera.depth.fx, camera.noise, grid_.cells()},
+        grower_.grow({grid_.columns(), grid_.rows(), grid_.cell_x(), camera.noise, grid_.cells()},
                      min_pixels_);
         labeller_.label(grid_, grower_.label_of_cell(), grower_.planes(),
                         {options_.thickness_m, options_.thickness_sigmas, camera.noise});
@@ -36,10 +35,8 @@ class CellSegmenter : public Segmenter {
         merge_pieces(camera, sums);
         make_regions(sums, out.regions);
         grid_.take_labels(out.labels);
-        tracer_.trace_all(depth, out.labels, camera, out.regions);
     }
 
-  private:
     CellRules rules_for(const CameraInfo& camera) const;
     void merge_pieces(const CameraInfo& camera, std::vector<RegionSums>& sums);
     void make_regions(const std::vector<RegionSums>& sums, std::vector<PlanarRegion>& regions);
@@ -55,7 +52,6 @@ class CellSegmenter : public Segmenter {
     MergedLabels merged_;              // of the pieces
     TouchList touching_;
     std::vector<std::uint16_t> order_, new_label_;
-    ShapeTracer tracer_;
 };
 
 CellRules CellSegmenter::rules_for(const CameraInfo& camera) const {
@@ -92,8 +88,8 @@ void CellSegmenter::merge_pieces(const CameraInfo& camera, std::vector<RegionSum
         if (i % columns + 1 < columns) meet(list, labeller_.cell_labels()[i + 1]);
         if (i + columns < grid_.size()) meet(list, labeller_.cell_labels()[i + columns]);
     }
-    merge_regions({options_.merge_m, options_.merge_sigmas, radians(options_.merge_angle_deg),
-                   kCellPx / camera.depth.fx, camera.noise},
+    merge_regions({options_.merge_m, options_.merge_sigmas, radians(options_.merge_angle_deg), grid_.cell_x(),
+                   camera.noise},
                   pieces_, touching_, merged_);
     for (std::size_t r = 0; r < pieces_.size(); ++r) {
         const std::size_t into = merged_.find(static_cast<std::uint16_t>(r + 1)) - 1u;
@@ -114,10 +110,10 @@ void CellSegmenter::make_regions(const std::vector<RegionSums>& region_sums,
         return std::pair(-region_sums[a].points.n, a) < std::pair(-region_sums[b].points.n, b);
     });
     new_label_.assign(region_sums.size() + 1, 0);
-    tracer_.recycle(regions);
     regions.resize(order_.size());
     for (std::size_t k = 0; k < order_.size(); ++k) {
         PlanarRegion& region = regions[k];
+        region.box = {};
         region.plane = pieces_[order_[k]].fit.plane.plane();
         region.moments = region_sums[order_[k]].points.moments();
         const Eigen::Vector3d& n = region.plane.normal;

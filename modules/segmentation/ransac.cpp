@@ -37,8 +37,8 @@ class RansacSegmenter : public Segmenter {
   public:
     RansacSegmenter(const RansacOptions& options, std::uint64_t seed) : options_(options), seed_(seed) {}
 
-    void segment(const DepthImage& depth, const CameraInfo& camera, Segmentation& out) override {
-        check_input(depth, camera);
+  private:
+    void find(const DepthImage& depth, const CameraInfo& camera, Segmentation& out) override {
         sample(depth, camera);
         out.regions.clear();
         out.labels.width = depth.width;
@@ -49,10 +49,8 @@ class RansacSegmenter : public Segmenter {
         }
         sort_largest_first(out);
         spread_labels(depth, camera, out);
-        tracer_.trace_all(depth, out.labels, camera, out.regions);
     }
 
-  private:
     /// Fills cloud_ with every n-th point of every n-th row, and remaining_ with all their indices.
     void sample(const DepthImage& depth, const CameraInfo& camera) {
         const DepthRange range(camera);
@@ -144,7 +142,6 @@ class RansacSegmenter : public Segmenter {
     Cloud::Ptr cloud_;
     std::vector<std::pair<int, int>> pixel_of_;  // u, v of each point
     pcl::Indices remaining_;                     // ascending
-    ShapeTracer tracer_;
 };
 
 }  // namespace

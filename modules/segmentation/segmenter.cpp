@@ -19,4 +19,15 @@ void check_input(const DepthImage& depth, const CameraInfo& camera) {
         std::to_string(camera.depth.height) + " as camera.depth");
 }
 
+void Segmenter::segment(const DepthImage& depth, const CameraInfo& camera, Segmentation& out) {
+    label(depth, camera, out);
+    tracer_.trace_all(depth, out.labels, camera, out.regions);
+}
+
+void Segmenter::label(const DepthImage& depth, const CameraInfo& camera, Segmentation& out) {
+    check_input(depth, camera);
+    tracer_.recycle(out.regions);
+    find(depth, camera, out);
+}
+
 }  // namespace planemap::segmentation

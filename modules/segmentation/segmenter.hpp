@@ -7,6 +7,7 @@
 #include "core/camera.hpp"
 #include "core/image.hpp"
 #include "core/region.hpp"
+#include "segmentation/shape.hpp"
 
 namespace planemap::segmentation {
 
@@ -26,7 +27,17 @@ class Segmenter {
     /// that are invalid or out of range carry no label; an image without valid readings gives no regions.
     /// `out` is overwritten and its buffers are reused. Throws std::invalid_argument when the camera is not
     /// valid or the image has not the size of camera.depth.
-    virtual void segment(const DepthImage& depth, const CameraInfo& camera, Segmentation& out) = 0;
+    void segment(const DepthImage& depth, const CameraInfo& camera, Segmentation& out);
+
+    /// The same without outlines and boxes, which are left empty, for who does not ask for them: a good part
+    /// of the time is theirs.
+    void label(const DepthImage& depth, const CameraInfo& camera, Segmentation& out);
+
+  private:
+    /// label() for input that is right. `out` holds an earlier result without its outlines.
+    virtual void find(const DepthImage& depth, const CameraInfo& camera, Segmentation& out) = 0;
+
+    ShapeTracer tracer_;
 };
 
 /// Throws what Segmenter::segment() promises for a bad camera or an image of the wrong size.

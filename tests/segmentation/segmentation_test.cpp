@@ -91,6 +91,31 @@ TEST_P(EveryMethod, IsDeterministicAndKeepsNoState) {
     EXPECT_FALSE(first.regions.empty());
 }
 
+TEST_P(EveryMethod, LabelsAndPlanesAreTheSameWithoutOutlines) {
+    const CameraInfo camera = scene::camera(320, 240);
+    const DepthImage corner = scene::render(
+        camera,
+        {scene::plane(scene::tilted(0, 0.8, {0, 0, 2})), scene::plane(scene::tilted(0, -0.7, {0, 0, 2}))},
+        true);
+    Segmentation full, bare;
+    segmenter_->segment(corner, camera, full);
+    segmenter_->segment(corner, camera, bare);  // whose outlines and boxes must go
+    segmenter_->label(corner, camera, bare);
+    EXPECT_EQ(bare.labels.pixels, full.labels.pixels);
+    ASSERT_EQ(bare.regions.size(), full.regions.size());
+    ASSERT_FALSE(full.regions.empty());
+    for (std::size_t i = 0; i < full.regions.size(); ++i) {
+        EXPECT_EQ(bare.regions[i].plane.normal, full.regions[i].plane.normal);
+        EXPECT_EQ(bare.regions[i].plane.d, full.regions[i].plane.d);
+        EXPECT_EQ(bare.regions[i].moments.scatter, full.regions[i].moments.scatter);
+        EXPECT_EQ(bare.regions[i].rms, full.regions[i].rms);
+        EXPECT_TRUE(bare.regions[i].outline.rings.empty());
+        EXPECT_TRUE(bare.regions[i].box.half_extents.isZero());
+        EXPECT_FALSE(full.regions[i].outline.rings.empty());
+    }
+    EXPECT_THROW(segmenter_->label(DepthImage(), camera, bare), std::invalid_argument);
+}
+
 TEST_P(EveryMethod, NothingValidIsNoRegion) {
     const CameraInfo camera = scene::camera(320, 240);
     for (const std::uint16_t raw :

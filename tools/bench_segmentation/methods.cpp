@@ -21,19 +21,26 @@ namespace {
 constexpr std::uint64_t kSeed = 1;
 constexpr int kMaxSubsampling = 16;
 
+enum class Outlines { kNone, kTraced };
+
 /// The project's own interface as a Finder.
 class SegmenterFinder : public Finder {
   public:
-    explicit SegmenterFinder(std::unique_ptr<segmentation::Segmenter> segmenter)
-        : segmenter_(std::move(segmenter)) {}
+    SegmenterFinder(std::unique_ptr<segmentation::Segmenter> segmenter, Outlines outlines)
+        : segmenter_(std::move(segmenter)), outlines_(outlines) {}
 
     void find(const DepthImage& depth, const CameraInfo& camera) override {
-        segmenter_->segment(depth, camera, segmentation_);
+        if (outlines_ == Outlines::kTraced) {
+            segmenter_->segment(depth, camera, segmentation_);
+        } else {
+            segmenter_->label(depth, camera, segmentation_);
+        }
     }
     void result(segmentation::Segmentation& out) override { out = segmentation_; }
 
   private:
     std::unique_ptr<segmentation::Segmenter> segmenter_;
+    Outlines outlines_;
     segmentation::Segmentation segmentation_;
 };
 
@@ -54,10 +61,13 @@ bool is_ransac(const std::string& name) {
 std::unique_ptr<Finder> make_finder(const MethodName& method) {
     silence_pcl();
     const int step = method.subsampling;
-    const auto ours = [](std::unique_ptr<segmentation::Segmenter> segmenter) {
-        return std::make_unique<SegmenterFinder>(std::move(segmenter));
+    const auto ours = [](std::unique_ptr<segmentation::Segmenter> segmenter,
+                         Outlines outlines = Outlines::kNone) {
+        return std::make_unique<SegmenterFinder>(std::move(segmenter), outlines);
     };
     if (method.name == "cells") return ours(segmentation::make_cell_segmenter({}));
+    if (method.name == "cells-outlines")
+        return ours(segmentation::make_cell_segmenter({}), Outlines::kTraced);
     if (method.name == "ransac")
         return ours(segmentation::make_ransac_segmenter(ransac_options(step), kSeed));
     if (method.name == "ransac-debian")
@@ -92,6 +102,7 @@ void append(const std::string& word, std::vector<MethodName>& methods) {
 const std::vector<MethodInfo>& known_methods() {
     static const std::vector<MethodInfo> methods{
         {"cells", "the project's default method", {1, 2, 4}, {}},
+        {"cells-outlines", "the same with outlines and boxes, as the module publishes it", {1}, {}},
         {"ransac", "the paper's: PCL's RANSAC, 1000 iterations, 3 planes", {1, 2, 4}, {1, 2}},
         {"ransac-debian", "the same with Debian's build of PCL's templates", {4}, {1, 2, 4}},
         {"organised", "PCL's organised multi-plane segmentation, 3D-gradient normals", {1}, {1}},

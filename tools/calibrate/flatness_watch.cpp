@@ -62,7 +62,7 @@ FlatnessWatch::FlatnessWatch(messages::FrameDecoder& decoder) : segmenter_(segme
 void FlatnessWatch::hear(const messages::Frame& frame) {
     if (flatness_.regions > 0 && frame.utime() < next_utime_) return;
     next_utime_ = frame.utime() + kEvery_us;
-    segmenter_->segment(frame.depth(), frame.camera(), segmentation_);
+    segmenter_->label(frame.depth(), frame.camera(), segmentation_);
     add(frame.depth(), segmentation_.labels, frame.sensed_camera());
 }
 
