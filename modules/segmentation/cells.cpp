@@ -27,7 +27,7 @@ class CellSegmenter : public Segmenter {
         min_pixels_ = std::max(3.0, options_.min_region_fraction * depth.width * depth.height);
         grid_.reset(depth, rules_for(camera));
         grid_.fit();
-        grower_.grow({grid_.columns(), grid_.rows(), grid_.cell_x(), camera.noise, grid_.cells()},
+        grower_.grow({grid_.columns(), grid_.rows(), kCellPx / camera.depth.fx, camera.noise, grid_.cells()},
                      min_pixels_);
         labeller_.label(grid_, grower_.label_of_cell(), grower_.planes(),
                         {options_.thickness_m, options_.thickness_sigmas, camera.noise});
@@ -88,8 +88,8 @@ void CellSegmenter::merge_pieces(const CameraInfo& camera, std::vector<RegionSum
         if (i % columns + 1 < columns) meet(list, labeller_.cell_labels()[i + 1]);
         if (i + columns < grid_.size()) meet(list, labeller_.cell_labels()[i + columns]);
     }
-    merge_regions({options_.merge_m, options_.merge_sigmas, radians(options_.merge_angle_deg), grid_.cell_x(),
-                   camera.noise},
+    merge_regions({options_.merge_m, options_.merge_sigmas, radians(options_.merge_angle_deg),
+                   kCellPx / camera.depth.fx, camera.noise},
                   pieces_, touching_, merged_);
     for (std::size_t r = 0; r < pieces_.size(); ++r) {
         const std::size_t into = merged_.find(static_cast<std::uint16_t>(r + 1)) - 1u;
