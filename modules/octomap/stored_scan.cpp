@@ -43,7 +43,7 @@ DepthImage inflated(const std::string& bytes, int width, int height) {
     return depth;
 }
 
-::octomap::point3d point3d(const Eigen::Vector3d& p) {
+::octomap::point3d octomap_point(const Eigen::Vector3d& p) {
     return {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())};
 }
 
@@ -68,14 +68,14 @@ std::vector<::octomap::point3d> StoredScan::points(const Pose& world_from_camera
             const std::uint16_t raw = depth(u, v);
             const double z = camera_.metres(raw);
             if (!is_valid_depth(raw) || z < camera_.depth_min_m || z > camera_.depth_max_m) continue;
-            points.push_back(point3d(world_from_depth * pinhole.unproject(u, v, z)));
+            points.push_back(octomap_point(world_from_depth * pinhole.unproject(u, v, z)));
         }
     }
     return points;
 }
 
 ::octomap::point3d StoredScan::origin(const Pose& world_from_camera) const {
-    return point3d((world_from_camera * camera_.color_from_depth).translation());
+    return octomap_point((world_from_camera * camera_.color_from_depth).translation());
 }
 
 }  // namespace planemap::octomap
