@@ -212,7 +212,8 @@ PatchMatch match_patches(const PlanarPatches& patches, const PinholeCamera& came
         if (!found) continue;
         const Eigen::Vector2d pixel = camera.project(sample.point);
         QuadraticTerm& tile = tiles[static_cast<std::size_t>(tile_of(camera, pixel.x(), pixel.y()))];
-        tile.information.selfadjointView<Eigen::Upper>().rankUpdate(found->j, found->weight);
+        const Twist weighted = found->weight * found->j;
+        tile.information += found->j * weighted.transpose();
         tile.gradient += (found->weight * found->r) * found->j;
         squared += found->r * found->r;
         ++match.matched;
@@ -245,10 +246,9 @@ Matrix6d information_of_tilts(const PlanarPatches& patches, const PinholeCamera&
         for (const Eigen::Vector3d& tilted : {across, Eigen::Vector3d(found->normal.cross(across))}) {
             Twist j;
             j << -tilted / found->sigma, tilted.cross(sample.point) / found->sigma;
-            information.selfadjointView<Eigen::Upper>().rankUpdate(j, found->weight * tilt * tilt);
+            information += found->weight * tilt * tilt * j * j.transpose();
         }
     }
-    information.triangularView<Eigen::StrictlyLower>() = information.transpose();
     return information;
 }
 

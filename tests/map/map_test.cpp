@@ -26,7 +26,6 @@ using scene::region_of;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-constexpr double kDeg = std::numbers::pi / 180;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // A room of 4 x 3 x 2.4 m whose inside is seen, and a table in it.
@@ -755,7 +754,7 @@ TEST(MapOptions, NamesAllBadFields) {
     options.merge_angle_deg = -1;
     options.outline_cell_m = kNan;
     try {
-        PlaneMapper{options};
+        const PlaneMapper mapper(options);
         FAIL();
     } catch (const std::invalid_argument& error) {
         EXPECT_THAT(error.what(), HasSubstr("merge_angle_deg"));
@@ -817,8 +816,9 @@ TEST(PlaneMapper, OfSeenSpaceAPartIsFoundWhereThereIsNoTimeForAll) {
     for (const SeenSpace::Block& block : part.blocks()) {
         const Eigen::Vector3d corner = SeenSpace::corner_of(block.at);
         for (int n = 0; n < 512; n += 7) {
+            const Eigen::Vector3i voxel(n % 8, n / 8 % 8, n / 64);
             const Eigen::Vector3d p =
-                corner + SeenSpace::kVoxel_m * Eigen::Vector3d(n % 8 + 0.5, n / 8 % 8 + 0.5, n / 64 + 0.5);
+                corner + SeenSpace::kVoxel_m * (voxel.cast<double>() + Eigen::Vector3d::Constant(0.5));
             EXPECT_TRUE(!part.is_free(p) || all.is_free(p));
         }
     }
