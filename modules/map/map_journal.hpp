@@ -27,9 +27,7 @@ class MapJournal {
 
     std::string file() const { return journal_.file().string(); }
     /// A keyframe or a look.
-    void add(std::string_view channel, std::span<const std::uint8_t> bytes) {
-        journal_.add(channel, bytes);
-    }
+    void add(std::string_view channel, std::span<const std::uint8_t> bytes) { journal_.add(channel, bytes); }
     /// The last trajectory, stored by the next save().
     void keep_poses(std::span<const std::uint8_t> trajectory) {
         trajectory_.assign(trajectory.begin(), trajectory.end());

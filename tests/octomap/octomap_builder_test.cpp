@@ -180,7 +180,8 @@ TEST(OctomapBuilder, ARebuildLeavesWhatNothingMovedIn) {
     std::map<int, std::pair<DepthImage, Pose>> scans;
     // Ten rooms, ten metres from one another, three keyframes each.
     for (int i = 0; i < 30; ++i) {
-        scans[i] = {room(small_camera()), pose(10 * (i / 3) + 0.1 * i, 0.02 * i)};
+        const int of_room = i / 3;
+        scans[i] = {room(small_camera()), pose(10 * of_room + 0.1 * i, 0.02 * i)};
         builder.add(i, scans[i].first, small_camera(), scans[i].second);
     }
     scans[7].second = pose(20.9, 0.2);

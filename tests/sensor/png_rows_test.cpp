@@ -45,7 +45,7 @@ const std::string kSignature = "\x89PNG\r\n\x1a\n";
 
 /// Rows as a file has them, each behind its filter: which comes in turn, or always the same one.
 Bytes filtered(const Bytes& pixels, int bytes_per_pixel, int filter = -1) {
-    const std::size_t row = static_cast<std::size_t>(kWidth * bytes_per_pixel);
+    const std::size_t row = static_cast<std::size_t>(kWidth) * static_cast<std::size_t>(bytes_per_pixel);
     Bytes out;
     for (std::size_t y = 0; y < kHeight; ++y) {
         const int which = filter < 0 ? static_cast<int>(y % 5) : filter;
