@@ -35,7 +35,7 @@ std::string description() {
            "            three runs a frame, one run where it takes over 20 ms. Decimation is in it, "
            "spreading\n"
            "            labels back to the full image is not; of ransac it is (the module does all).\n"
-           "            Outlines are in cells-outlines only. Point clouds and normals of the peers are in it.\n"
+           "            Outlines are in cells-outlines only; peers' point clouds and normals are in.\n"
            "  planes    regions a frame, of any size\n"
            "  expl%     readings that carry a label and lie within max(1.5 cm, 3 sigma) of its plane, with\n"
            "            sigma(z) = 0.0012 + 0.0019 (z - 0.4)^2 m\n"
