@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // planemap-bench-run: what a whole run costs.
-#include <unistd.h>
-
+#include <filesystem>
 #include <sstream>
 
 #include "bench_run/ways.hpp"
 #include "benchmark/choices.hpp"
 #include "benchmark/program.hpp"
 #include "benchmark/report.hpp"
+#include "benchmark/scratch_folder.hpp"
 
 namespace planemap::bench_run {
 namespace {
@@ -42,26 +42,6 @@ void add_flags(messages::Flags& flags, Arguments& arguments) {
               "the folder of planemap-run and the other programs; default: where this program is");
 }
 
-/// A folder that goes with this.
-class Scratch {
-  public:
-    Scratch()
-        : path_(std::filesystem::temp_directory_path() /
-                ("planemap_bench_run_" + std::to_string(::getpid()))) {
-        std::filesystem::create_directories(path_);
-    }
-    ~Scratch() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-    Scratch(const Scratch&) = delete;
-    Scratch& operator=(const Scratch&) = delete;
-    const std::filesystem::path& path() const { return path_; }
-
-  private:
-    std::filesystem::path path_;
-};
-
 int run(const Arguments& arguments) {
     FieldErrors errors("benchmark options");
     arguments.check(errors);
@@ -69,7 +49,7 @@ int run(const Arguments& arguments) {
     const std::vector<WayInfo> ways = benchmark::chosen("ways", arguments.ways, known_ways());
     const std::vector<benchmark::SequenceInfo> sequences = benchmark::parse_sequences(
         arguments.sequences, benchmark::with_recordings({}), benchmark::Unknown::kIsPath);
-    const Scratch scratch;
+    const benchmark::ScratchFolder scratch("planemap-bench-run");
     Bench bench{arguments.programs, arguments.data, scratch.path(), arguments.frames};
     if (bench.programs.empty())
         bench.programs = std::filesystem::read_symlink("/proc/self/exe").parent_path();

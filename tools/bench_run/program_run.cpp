@@ -2,7 +2,6 @@
 #include "bench_run/program_run.hpp"
 
 #include <fcntl.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -16,6 +15,8 @@
 #include <stdexcept>
 #include <thread>
 #include <utility>
+
+#include "core/processor_time.hpp"
 
 namespace planemap::bench_run {
 
@@ -77,10 +78,6 @@ std::string last_line(std::FILE* file) {
     return line.empty() ? last : line;
 }
 
-double seconds(const timeval& time) {
-    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
-}
-
 }  // namespace
 
 ProgramRun run_program_to_end(const std::vector<std::string>& command) {
@@ -103,7 +100,7 @@ ProgramRun run_program_to_end(const std::vector<std::string>& command) {
     }
     ProgramRun run;
     run.wall_s = std::chrono::duration<double>(Clock::now() - start).count();
-    run.cpu_s = seconds(usage.ru_utime) + seconds(usage.ru_stime);
+    run.cpu_s = processor_seconds(usage);
     run.peak_rss_mb = memory.megabytes();
     if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return run;
     if (WIFEXITED(status) && WEXITSTATUS(status) == kNotStarted)

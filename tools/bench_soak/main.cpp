@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // planemap-bench-soak: a day's walk in one place, and the memory that it takes.
-#include <unistd.h>
-
 #include <cstdio>
 
 #include "bench_soak/soak.hpp"
 #include "benchmark/program.hpp"
+#include "benchmark/scratch_folder.hpp"
 #include "core/standard_output.hpp"
 
 namespace planemap {
@@ -21,9 +20,8 @@ struct Options {
 
 int run(const Options& options) {
     messages::catch_stop_signals();
-    const std::filesystem::path folder =
-        std::filesystem::temp_directory_path() / ("planemap_soak_" + std::to_string(::getpid()));
-    const bench_soak::Round round = bench_soak::render_round(options.world, folder);
+    const benchmark::ScratchFolder folder("planemap-soak");
+    const bench_soak::Round round = bench_soak::render_round(options.world, folder.path());
     std::printf("%s: a round of %zu frames, again and again, %g s apart by their stamps\n%s",
                 options.world.c_str(), round.world_from_camera.size(), options.soak.period_s,
                 bench_soak::table().heading().c_str());
@@ -32,7 +30,6 @@ int run(const Options& options) {
         finish_printing();
         return !messages::stop_requested();
     });
-    std::filesystem::remove_all(folder);
     const std::optional<double> growth = bench_soak::growth(points, options.soak.period_s);
     if (!growth) {
         std::puts("memory after the first half hour: not measured, the walk was not longer than that");

@@ -2,7 +2,6 @@
 #include "bench_soak/soak.hpp"
 
 #include <malloc.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -13,6 +12,7 @@
 #include <stdexcept>
 
 #include "bench_map/growth.hpp"
+#include "core/processor_time.hpp"
 #include "messages/channels.hpp"
 #include "messages/convert.hpp"
 #include "messages/decode.hpp"
@@ -31,10 +31,7 @@ constexpr std::int64_t kStartUtime = 1500000000000000;
 double cpu_ms() {
     rusage usage = {};
     getrusage(RUSAGE_SELF, &usage);
-    const auto ms = [](const timeval& t) {
-        return 1e3 * static_cast<double>(t.tv_sec) + 1e-3 * static_cast<double>(t.tv_usec);
-    };
-    return ms(usage.ru_utime) + ms(usage.ru_stime);
+    return 1e3 * processor_seconds(usage);
 }
 
 /// Memory of the process that is in use now; its peak would hide what comes back.

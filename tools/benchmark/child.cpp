@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "benchmark/child.hpp"
 
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -12,13 +11,11 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/processor_time.hpp"
+
 namespace planemap::benchmark {
 
 namespace {
-
-double seconds(const timeval& time) {
-    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
-}
 
 void write_all(int file, const std::string& text) {
     for (std::size_t from = 0; from < text.size();) {
@@ -79,7 +76,7 @@ ChildResult run_in_child(const std::function<nlohmann::json()>& work) {
     nlohmann::json parsed = nlohmann::json::parse(answer, nullptr, false);
     if (parsed.is_discarded()) throw std::runtime_error("its process ended without an answer");
     if (parsed.contains("error")) throw std::runtime_error(parsed["error"].get<std::string>());
-    return {std::move(parsed["value"]), seconds(usage.ru_utime) + seconds(usage.ru_stime),
+    return {std::move(parsed["value"]), processor_seconds(usage),
             static_cast<double>(usage.ru_maxrss) / 1024};  // Linux counts in KiB
 }
 

@@ -4,8 +4,6 @@
 #include <fcntl.h>
 #include <spdlog/spdlog.h>
 #include <sys/prctl.h>
-#include <sys/resource.h>
-#include <sys/time.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -14,6 +12,8 @@
 #include <csignal>
 #include <cstring>
 #include <stdexcept>
+
+#include "core/processor_time.hpp"
 
 namespace planemap::launcher {
 
@@ -67,6 +67,7 @@ void Supervisor::block_signals() {
 void Supervisor::start(const std::string& name, const std::vector<std::string>& command) {
     if (runs(name)) throw std::logic_error(name + " runs already");
     std::vector<char*> arguments;
+    arguments.reserve(command.size() + 1);
     for (const std::string& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
     arguments.push_back(nullptr);
     const pid_t parent = ::getpid(), pid = ::fork();
@@ -113,8 +114,7 @@ std::optional<Ending> Supervisor::reap() {
     if (child == children_.end()) return reap();
     Ending ending{child->first, 0, false, Clock::now() - child->second.since};
     ending.by_signal = WIFSIGNALED(status);
-    for (const timeval& time : {used.ru_utime, used.ru_stime})
-        cpu_s_[child->first] += static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+    cpu_s_[child->first] += processor_seconds(used);
     ending.code = ending.by_signal ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
     children_.erase(child);
     return ending;

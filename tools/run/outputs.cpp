@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "run/outputs.hpp"
 
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -11,6 +9,7 @@
 
 #include "core/components.hpp"
 #include "core/files.hpp"
+#include "core/processor_time.hpp"
 #include "evaluate/point_sample.hpp"
 #include "evaluate/soundness_report.hpp"
 #include "map/map_file.hpp"
@@ -42,10 +41,7 @@ constexpr char kPointsComment[] =
 double cpu_seconds() {
     rusage usage = {};
     getrusage(RUSAGE_SELF, &usage);
-    const auto seconds = [](const timeval& t) {
-        return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
-    };
-    return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+    return processor_seconds(usage);
 }
 
 double peak_rss_mb() {
