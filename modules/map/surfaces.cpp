@@ -15,7 +15,7 @@ namespace planemap::map {
 namespace {
 
 constexpr double kCell_m = 0.05;    // of the rasters that shapes are compared on
-constexpr double kHopeless = 3;     // times what may be, between planes where their boxes overlap
+constexpr double kHopeless = 1.5;   // times what may be, between planes where their boxes overlap
 constexpr double kMostCells = 4e6;  // of one of them: beyond, its cells are coarser
 
 /// How far a plane's views may be off along its normal by what depth errs.
@@ -78,14 +78,19 @@ class SurfaceUnion {
     std::optional<double> misfit(std::size_t a, std::size_t b) {
         const PlaneEstimate &plane_a = planes_.estimates()[a], &plane_b = planes_.estimates()[b];
         const RegionRelation relation = relate(plane_a.plane, plane_a.box, plane_b.plane, plane_b.box);
-        if (relation.gap_m > 0 || relation.distance_m > kHopeless * rules_.most_apart_m) return std::nullopt;
-        const double most = tolerance(a, b);
+        if (relation.gap_m > 0 || relation.distance_m > kHopeless * rules_.most_apart_full_m)
+            return std::nullopt;
         const std::optional<Overlap> overlap = overlap_of(a, b);
-        if (!overlap || overlap->apart_m > most) return std::nullopt;
-        if (overlap->share < rules_.full_overlap && are_seen_as_two(a, b)) return std::nullopt;
+        if (!overlap) return std::nullopt;
+        const bool full = overlap->share >= rules_.full_overlap;
+        const double most = std::min(full ? rules_.most_apart_full_m : rules_.most_apart_m, tolerance(a, b));
+        if (overlap->apart_m > most) return std::nullopt;
+        const bool is_told_by_overlap = full && overlap->apart_m <= rules_.most_apart_m;
+        if (!is_told_by_overlap && are_seen_as_two(a, b)) return std::nullopt;
         return overlap->apart_m / most;
     }
 
+    /// How far apart what poses and depth err puts them.
     double tolerance(std::size_t a, std::size_t b) const {
         double variance = 2 * rules_.pose_sigma_m * rules_.pose_sigma_m, bias = 0;
         for (const DepthError* error : {&errors_[a], &errors_[b]}) {
@@ -93,7 +98,7 @@ class SurfaceUnion {
             variance += error->variance / error->weight;
             bias += error->bias / error->weight;
         }
-        return std::min(rules_.most_apart_m, rules_.sigmas * std::sqrt(variance) + bias);
+        return rules_.sigmas * std::sqrt(variance) + bias;
     }
 
     struct Overlap {

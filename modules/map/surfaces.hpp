@@ -30,6 +30,9 @@ struct SurfaceRules {
     double range_bias = kRangeBias;
     double sigmas = 3;           ///< of the errors of both planes, by which they may be apart
     double most_apart_m = 0.15;  ///< whatever the errors
+    /// The same where one says nearly all again of what the other says (`full_overlap`), and no view saw a
+    /// step between them: readings from afar err by more than 15 cm.
+    double most_apart_full_m = 0.3;
     double least_overlap = 0.2;  ///< of the smaller one's shape, that the other says again
     double full_overlap = 0.85;  ///< of it, that two surfaces never have: one would hide the other
     double beside_m = 0.3;       ///< gap between regions of one view that are seen side by side

@@ -76,6 +76,27 @@ TEST(Surfaces, WhatIsFartherApartThanPosesErrStaysTwo) {
     EXPECT_EQ(world.united(), 2u);
 }
 
+/// A wall seen from near, and its middle again from afar, off by more than near readings ever are.
+World wall_from_near_and_far(double off_m) {
+    World world;
+    for (int i = 0; i < 3; ++i) world.see({{wall_at(0, 0, 6, 1.5), 0}});
+    for (int i = 0; i < 3; ++i) world.see({{wall_at(0, 0, 6 + off_m, 0.5), 1}});
+    return world;
+}
+
+TEST(Surfaces, FromAfarAPartOfASurfaceMayLieFartherOff) {
+    EXPECT_EQ(wall_from_near_and_far(0.2).united(), 1u);
+    EXPECT_EQ(wall_from_near_and_far(0.4).united(), 2u);
+}
+
+TEST(Surfaces, AThingBeforeAFarWallThatViewsSawBesideItStaysTwo) {
+    World world = wall_from_near_and_far(-0.25);
+    Rectangle wall = wall_at(0, 0, 6, 1.5);
+    wall.holes = {scene::rectangle_ring(-0.5, -0.5, 0.5, 0.5)};
+    for (int i = 0; i < 4; ++i) world.see({{wall, 0}, {wall_at(0, 0, 5.75, 0.5), 1}});
+    EXPECT_EQ(world.united(), 2u);
+}
+
 TEST(Surfaces, BesideEachOtherIsNotTwice) {
     World world;
     for (int i = 0; i < 3; ++i) world.see({{wall_at(-0.48, 0, 3), 0}});
