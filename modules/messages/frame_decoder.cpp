@@ -4,7 +4,6 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstring>
 #include <string>
 
@@ -25,25 +24,6 @@ using bot_core::image_t;
 using bot_core::images_t;
 
 constexpr const char *kSeqKey = "seq", *kSenderKey = "sender";
-
-/// Adds what passes from its construction to its destruction.
-template <typename Spent>
-class Timer {
-  public:
-    explicit Timer(Spent& spent) : spent_(spent) {}
-    ~Timer() {
-        spent_.ms +=
-            std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
-        spent_.cpu_ms += thread_cpu_ms() - cpu_start_ms_;
-    }
-    Timer(const Timer&) = delete;
-    Timer& operator=(const Timer&) = delete;
-
-  private:
-    Spent& spent_;
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-    double cpu_start_ms_ = thread_cpu_ms();
-};
 
 template <typename T>
 std::optional<T> metadata(const image_t& image, const char* key) {
@@ -75,14 +55,25 @@ bool fits(const images_t& images, const Undistortion& camera) {
     return fits(find_depth(images), camera.sensed().depth) && fits(find_color(images), camera.sensed().color);
 }
 
+/// Whether the images are the same; what is told beside them (a number, a sender) may differ.
+bool are_same(const images_t& a, const images_t& b) {
+    const auto is_same = [](const image_t& one, const image_t& other) {
+        return one.utime == other.utime && one.width == other.width && one.height == other.height &&
+               one.row_stride == other.row_stride && one.pixelformat == other.pixelformat &&
+               one.data == other.data;
+    };
+    return a.utime == b.utime && a.image_types == b.image_types &&
+           std::equal(a.images.begin(), a.images.end(), b.images.begin(), b.images.end(), is_same);
+}
+
+}  // namespace
+
 images_t decode_images(std::span<const std::uint8_t> bytes) {
     images_t images = decode<images_t>(bytes);
     checked_utime(images.utime, "frame.utime");
     for (const image_t& image : images.images) checked_utime(image.utime, "frame.images.utime");
     return images;
 }
-
-}  // namespace
 
 Frame::Frame(images_t images, std::shared_ptr<const Undistortion> camera, std::shared_ptr<DecodeTimes> times)
     : images_(std::move(images)), camera_(std::move(camera)), times_(std::move(times)) {
@@ -98,15 +89,21 @@ Frame::Frame(images_t images, std::shared_ptr<const Undistortion> camera, std::s
 }
 
 Frame::~Frame() {
-    const double ms = decoding_.ms + registering_.ms;
+    const Spent &decoding = pixels_.decoding, &registering = pixels_.registering;
+    const double ms = decoding.ms + registering.ms;
     if (ms > 0) {
         times_->decode_ms.add(ms);
-        times_->decode_cpu_ms.add(decoding_.cpu_ms + registering_.cpu_ms);
+        times_->decode_cpu_ms.add(decoding.cpu_ms + registering.cpu_ms);
     }
-    if (registering_.ms > 0) {
-        times_->registration_ms.add(registering_.ms);
-        times_->registration_cpu_ms.add(registering_.cpu_ms);
+    if (registering.ms > 0) {
+        times_->registration_ms.add(registering.ms);
+        times_->registration_cpu_ms.add(registering.cpu_ms);
     }
+}
+
+void Frame::take_over(Frame& prepared) {
+    if (camera_ == prepared.camera_ && are_same(images_, prepared.images_))
+        pixels_ = std::exchange(prepared.pixels_, {});
 }
 
 std::int64_t Frame::color_utime() const {
@@ -132,34 +129,37 @@ void set_sender(image_t& image, std::uint64_t sender) {
 }
 
 const DepthImage& Frame::depth() const {
-    if (!depth_) {
-        const Timer timer(decoding_);
-        depth_ = depth_pixels(*raw_depth_, zipped_);
-        correct_depth(*depth_, camera_->sensed());
-        camera_->undistort(*depth_);
+    std::optional<DepthImage>& depth = pixels_.depth;
+    if (!depth) {
+        const SpentTimer timer(pixels_.decoding);
+        depth = depth_pixels(*raw_depth_, zipped_);
+        correct_depth(*depth, camera_->sensed());
+        camera_->undistort(*depth);
     }
-    return *depth_;
+    return *depth;
 }
 
 const DepthImage& Frame::depth_in_color() const {
     const DepthImage& sensed = depth();
     if (camera().registered && camera().depth == camera().color) return sensed;
-    if (!depth_in_color_) {
-        const Timer timer(registering_);
-        depth_in_color_ = register_depth(sensed, camera());
-        camera_->hide_unseen(*depth_in_color_);
+    std::optional<DepthImage>& registered = pixels_.depth_in_color;
+    if (!registered) {
+        const SpentTimer timer(pixels_.registering);
+        registered = register_depth(sensed, camera());
+        camera_->hide_unseen(*registered);
     }
-    return *depth_in_color_;
+    return *registered;
 }
 
 const GrayImage* Frame::gray() const {
     if (color_ == nullptr) return nullptr;
-    if (!gray_) {
-        const Timer timer(decoding_);
-        gray_ = luma_pixels(*color_);
-        camera_->undistort(*gray_);
+    std::optional<GrayImage>& gray = pixels_.gray;
+    if (!gray) {
+        const SpentTimer timer(pixels_.decoding);
+        gray = luma_pixels(*color_);
+        camera_->undistort(*gray);
     }
-    return &*gray_;
+    return &*gray;
 }
 
 std::optional<RgbImage> Frame::color(int reduction) const {
@@ -291,6 +291,18 @@ std::shared_ptr<const Frame> FrameDecoder::decode(const RawMessage& message) con
     return std::make_shared<const Frame>(decode_images(message.bytes), camera_, times_);
 }
 
+std::shared_ptr<Frame> FrameDecoder::prepare(images_t images,
+                                             std::shared_ptr<const Undistortion> camera) const {
+    return std::make_shared<Frame>(std::move(images), std::move(camera), times_);
+}
+
+std::shared_ptr<const Frame> FrameDecoder::frame_of(images_t images,
+                                                    std::shared_ptr<const Undistortion> camera) {
+    auto frame = prepare(std::move(images), std::move(camera));
+    if (expected_) frame->take_over(*std::exchange(expected_, nullptr));
+    return frame;
+}
+
 /// The frame, if it is the next one of the sender that is followed; else why not.
 std::pair<std::shared_ptr<const Frame>, Verdict> FrameDecoder::take(const RawMessage& message) {
     images_t images = decode_images(message.bytes);
@@ -301,7 +313,7 @@ std::pair<std::shared_ptr<const Frame>, Verdict> FrameDecoder::take(const RawMes
         metadata<std::uint64_t>(*depth, kSenderKey) && judge(images, checksum) == Verdict::kForeign) {
         return {nullptr, Verdict::kForeign};
     }
-    auto frame = std::make_shared<const Frame>(std::move(images), is_other ? other_camera_ : camera_, times_);
+    std::shared_ptr<const Frame> frame = frame_of(std::move(images), is_other ? other_camera_ : camera_);
     const Verdict verdict = judge(frame->images_, checksum);
     if (verdict == Verdict::kTake) {
         choose_camera(frame->images_);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <any>
 #include <bot_core/images_t.hpp>
 #include <cstdint>
 #include <functional>
@@ -18,6 +19,7 @@
 #include "messages/channels.hpp"
 #include "messages/module_status.hpp"
 #include "messages/sender_guard.hpp"
+#include "messages/spent.hpp"
 
 namespace planemap::messages {
 
@@ -59,8 +61,30 @@ class Frame {
     /// Nothing without colour.
     std::optional<RgbImage> color(int reduction) const;
 
+    /// Keeps with the frame what a module made of it ahead of its turn (see FrameDecoder::expect()), one of
+    /// each type.
+    template <typename Made>
+    void keep(Made made) {
+        pixels_.made.emplace_back(std::move(made));
+    }
+    /// What was kept; nullptr if nothing of this type was.
+    template <typename Made>
+    const Made* made() const {
+        for (const std::any& made : pixels_.made)
+            if (const auto* found = std::any_cast<Made>(&made)) return found;
+        return nullptr;
+    }
+
   private:
     friend class FrameDecoder;
+    /// What was made of the images so far, and what it took.
+    struct Pixels {
+        std::optional<DepthImage> depth, depth_in_color;
+        std::optional<GrayImage> gray;
+        std::vector<std::any> made;
+        Spent decoding, registering;
+    };
+    void take_over(Frame& prepared);
 
     bot_core::images_t images_;
     std::shared_ptr<const Undistortion> camera_;
@@ -68,13 +92,11 @@ class Frame {
     const bot_core::image_t* color_ = nullptr;  // into images_
     const bot_core::image_t* raw_depth_ = nullptr;
     bool zipped_ = false;
-    struct Spent {
-        double ms = 0, cpu_ms = 0;
-    };
-    mutable Spent decoding_, registering_;
-    mutable std::optional<DepthImage> depth_, depth_in_color_;
-    mutable std::optional<GrayImage> gray_;
+    mutable Pixels pixels_;
 };
+
+/// The images of a message. Throws MessageError for one that is none.
+bot_core::images_t decode_images(std::span<const std::uint8_t> bytes);
 
 /// Turns messages into frames, each decoded once in a process however many shells take it. Subscribes to the
 /// camera's description itself.
@@ -100,6 +122,17 @@ class FrameDecoder {
     /// message that is no usable frame.
     std::shared_ptr<const Frame> decode(const RawMessage& message) const;
 
+    /// The camera that frames are decoded with now; nullptr when it is not described yet.
+    std::shared_ptr<const Undistortion> camera_in_use() const { return camera_; }
+    /// A frame for expect(), of these images and a camera_in_use(). Any thread may call it, and ask the frame
+    /// for its images and keep() what it made of it. Throws MessageError for images that are no usable frame.
+    std::shared_ptr<Frame> prepare(bot_core::images_t images,
+                                   std::shared_ptr<const Undistortion> camera) const;
+    /// If the next message holds the same images, byte by byte, and is of the same camera, its frame takes
+    /// over what was made of this one; else, or with nullptr, it begins with nothing. So nothing but the time
+    /// that it takes depends on what is expected.
+    void expect(std::shared_ptr<Frame> frame) { expected_ = std::move(frame); }
+
     /// On a network, a frame that waited longer than this for its turn is dropped: in every process that
     /// lives on frames, before anything is done with it. What it counts as lost is kStale.
     static constexpr std::int64_t kStale_us = 500000;
@@ -124,6 +157,8 @@ class FrameDecoder {
     void on_frame(const RawMessage& message);
     SenderGuard::Verdict judge(const bot_core::images_t& images, std::uint32_t checksum);
     void choose_camera(const bot_core::images_t& images);
+    std::shared_ptr<const Frame> frame_of(bot_core::images_t images,
+                                          std::shared_ptr<const Undistortion> camera);
     std::pair<std::shared_ptr<const Frame>, SenderGuard::Verdict> take(const RawMessage& message);
     bool is_stale(const RawMessage& message) const;
     void lose_stale(const Frame& frame);
@@ -132,6 +167,7 @@ class FrameDecoder {
 
     Bus& bus_;
     std::shared_ptr<const Undistortion> camera_, other_camera_;  ///< in use; another one that was described
+    std::shared_ptr<Frame> expected_;                            ///< prepared ahead of its message
     bool camera_is_given_ = false, two_cameras_said_ = false;
     std::string camera_refused_;  ///< why the last description could not be used; empty if it could
     std::optional<std::int64_t> newest_utime_,

@@ -117,12 +117,10 @@ std::string ModuleStatus::failure() const {
     return "none of the " + std::to_string(received_) + " inputs could be used: " + full_text();
 }
 
-ModuleStatus::Work::~Work() {
-    const double ms =
-        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
-    status_.work_ms_.add(ms);
-    status_.work_cpu_ms_.add(thread_cpu_ms() - cpu_start_ms_);
-    status_.window_ms_.add(ms);
+void ModuleStatus::worked(const Spent& spent) {
+    work_ms_.add(spent.ms);
+    work_cpu_ms_.add(spent.cpu_ms);
+    window_ms_.add(spent.ms);
 }
 
 module_status_t ModuleStatus::message(std::int64_t now_us, bool stopped) const {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -12,11 +11,9 @@
 #include "core/histogram.hpp"
 #include "messages/bus.hpp"
 #include "messages/seq_counter.hpp"
+#include "messages/spent.hpp"
 
 namespace planemap::messages {
-
-/// CPU time of the calling thread since it began, milliseconds.
-double thread_cpu_ms();
 
 /// Counts what a module does and tells it once a second on PLANEMAP_STATUS_<MODULE>.
 class ModuleStatus {
@@ -56,18 +53,23 @@ class ModuleStatus {
     /// the 10th, 100th and so on.
     void remark(const std::string& kind, const std::string& text);
 
-    /// Measures the work on one input from construction to destruction.
+    /// The work on one input, on whichever thread it was done.
+    void worked(const Spent& spent);
+    /// Measures it from construction to destruction.
     class Work {
       public:
-        explicit Work(ModuleStatus& status) : status_(status) {}
-        ~Work();
+        explicit Work(ModuleStatus& status) : status_(status) { timer_.emplace(spent_); }
+        ~Work() {
+            timer_.reset();
+            status_.worked(spent_);
+        }
         Work(const Work&) = delete;
         Work& operator=(const Work&) = delete;
 
       private:
         ModuleStatus& status_;
-        std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-        double cpu_start_ms_ = thread_cpu_ms();
+        Spent spent_;
+        std::optional<SpentTimer> timer_;
     };
 
     const std::string& module() const { return module_; }

@@ -100,6 +100,52 @@ class Subscribed : public testing::Test {
     std::vector<std::shared_ptr<const Frame>> frames_;
 };
 
+TEST_F(Subscribed, TakeOverWhatWasMadeAheadOfTheSameImagesAndCameraAlone) {
+    struct Made {
+        int number;
+    };
+    const auto images_of = [](std::int64_t utime, std::uint16_t level) {
+        auto images = frame_message(DepthImage(64, 48, level), RgbImage(64, 48), ColorEncoding::kRaw,
+                                    DepthEncoding::kRaw);
+        images.utime = utime;
+        images.images[1].metadata.clear();  // its number and sender are not known yet
+        return images;
+    };
+    const auto expect = [&](std::int64_t utime, std::uint16_t level,
+                            std::shared_ptr<const Undistortion> camera) {
+        const std::shared_ptr<Frame> prepared = decoder_.prepare(images_of(utime, level), std::move(camera));
+        const DepthImage* const depth = &prepared->depth();
+        prepared->keep(Made{7});
+        decoder_.expect(prepared);
+        return depth->pixels.data();
+    };
+    const std::shared_ptr<const Undistortion> camera = decoder_.camera_in_use();
+    const std::uint16_t* const pixels = expect(100, 900, camera);
+    publish(Sent{.utime = 100, .seq = 0});
+    ASSERT_NE(frames_.back()->made<Made>(), nullptr);
+    EXPECT_EQ(frames_.back()->made<Made>()->number, 7);
+    EXPECT_EQ(frames_.back()->depth().pixels.data(), pixels) << "decoded once";
+    EXPECT_EQ(frames_.back()->seq(), 0u);
+    EXPECT_EQ(frames_.back()->made<int>(), nullptr);
+
+    publish(Sent{.utime = 200, .seq = 1});
+    EXPECT_EQ(frames_.back()->made<Made>(), nullptr) << "it is for one message";
+    expect(300, 901, camera);
+    publish(Sent{.utime = 300, .seq = 2});
+    EXPECT_EQ(frames_.back()->made<Made>(), nullptr) << "another depth image";
+    EXPECT_EQ(frames_.back()->depth().pixels.front(), 900);
+    expect(401, 900, camera);
+    publish(Sent{.utime = 400, .seq = 3});
+    EXPECT_EQ(frames_.back()->made<Made>(), nullptr) << "another moment";
+    expect(500, 900, std::make_shared<const Undistortion>(other_camera_));
+    publish(Sent{.utime = 500, .seq = 4});
+    EXPECT_EQ(frames_.back()->made<Made>(), nullptr) << "another camera";
+    EXPECT_EQ(frames_.size(), 5u);
+    frames_.clear();
+    decoder_.expect(nullptr);
+    EXPECT_EQ(decoder_.times().decode_ms.count(), 5) << "what was in vain took time, too";
+}
+
 TEST_F(Subscribed, ShareAFrameAndTheTroubleOfOneIsNotTheNexts) {
     ModuleStatus second("octomap"), third("segmentation");
     std::shared_ptr<const Frame> shared, last;
