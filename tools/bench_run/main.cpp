@@ -15,6 +15,7 @@ namespace {
 struct Arguments : benchmark::Options {
     std::string ways = benchmark::names_of(known_ways());
     std::filesystem::path programs;
+    int threads = 0;
 };
 
 std::string description() {
@@ -38,6 +39,7 @@ void add_flags(messages::Flags& flags, Arguments& arguments) {
     benchmark::add_flags(flags, arguments,
                          "of each sequence, from its start; 0: all. Processes play all of them");
     flags.add("ways", arguments.ways, "comma-separated names, see above");
+    flags.add("threads", arguments.threads, "of planemap-run; 0: as many as it takes by itself");
     flags.add("bin", arguments.programs,
               "the folder of planemap-run and the other programs; default: where this program is");
 }
@@ -50,7 +52,7 @@ int run(const Arguments& arguments) {
     const std::vector<benchmark::SequenceInfo> sequences = benchmark::parse_sequences(
         arguments.sequences, benchmark::with_recordings({}), benchmark::Unknown::kIsPath);
     const benchmark::ScratchFolder scratch("planemap-bench-run");
-    Bench bench{arguments.programs, arguments.data, scratch.path(), arguments.frames};
+    Bench bench{arguments.programs, arguments.data, scratch.path(), arguments.frames, arguments.threads};
     if (bench.programs.empty())
         bench.programs = std::filesystem::read_symlink("/proc/self/exe").parent_path();
     benchmark::Report report(arguments, "OpenCV's RgbdPlane, OctoMap");

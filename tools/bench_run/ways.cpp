@@ -58,7 +58,7 @@ class Measurement {
         std::vector<std::string> command{program(is_live ? "planemap-launch" : "planemap-run"), input,
                                          "--output", output.string()};
         if (way != kWithOctomap) command.emplace_back("--no-octomap");
-        if (!is_live) command.emplace_back("--quiet");
+        if (!is_live) command.insert(command.end(), {"--quiet", "--threads", std::to_string(bench_.threads)});
         if (!is_live && bench_.frames > 0)
             command.insert(command.end(), {"--frames", "0:" + std::to_string(bench_.frames)});
         const ProgramRun run = run_program_to_end(command);

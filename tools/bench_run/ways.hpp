@@ -25,6 +25,7 @@ struct Bench {
     std::filesystem::path data;
     std::filesystem::path scratch;  ///< a folder for logs and results; exists
     int frames = 0;                 ///< of the runs; 0: all
+    int threads = 0;                ///< of planemap-run; 0: as many as it takes by itself
 };
 
 /// Rows of a sequence, one a way, in the order given; then those of the peers. A row's "sequence", "way",
