@@ -58,7 +58,8 @@ OptionList options_of(MapOptions& options) {
     list.add("fold_after", options.fold_after, {0, 1e9},
              "Keyframes older than so many newer ones are taken not to move any more: their regions are "
              "folded into the planes; 0: never");
-    list.add("threads", options.threads, {1, 64}, "Threads of a rebuild; they do not change the result");
+    list.add("threads", options.threads, {1, 64}, "Threads of a rebuild; they do not change the result",
+             kExpert);
     return list;
 }
 

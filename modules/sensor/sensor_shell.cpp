@@ -237,14 +237,10 @@ void SensorShell::publish_camera(std::int64_t utime) {
     last_camera_wall_us_ = messages::now_us();
 }
 
-void SensorShell::publish(const SensorFrame& frame) {
-    const messages::ModuleStatus::Work work(status_);
-    if (camera_seq_ == 0 || camera_is_due(frame.utime)) publish_camera(frame.utime);
-    for (const Acceleration& reading : frame.accelerations)
-        bus_.publish(messages::channels::kAcceleration, messages::to_message(reading));
+bot_core::images_t images_of(const SensorFrame& frame, const CameraInfo& camera,
+                             const SensorShellOptions& options) {
     bot_core::images_t images;
     images.utime = frame.utime;
-    const CameraInfo& camera = source_->camera();
     if (!frame.color_jpeg.empty()) {
         images.image_types.push_back(bot_core::images_t::LEFT);
         images.images.push_back(messages::jpeg_image_message(frame.color_jpeg, camera.color.width,
@@ -253,10 +249,10 @@ void SensorShell::publish(const SensorFrame& frame) {
         images.image_types.push_back(bot_core::images_t::LEFT);
         images.images.push_back(messages::color_image_message(
             frame.color, frame.color_utime,
-            options_.color == "jpeg" ? messages::ColorEncoding::kJpeg : messages::ColorEncoding::kRaw,
-            options_.jpeg_quality));
+            options.color == "jpeg" ? messages::ColorEncoding::kJpeg : messages::ColorEncoding::kRaw,
+            options.jpeg_quality));
     }
-    const bool zipped = options_.depth == "zipped";
+    const bool zipped = options.depth == "zipped";
     images.image_types.push_back(zipped ? std::int16_t{bot_core::images_t::DEPTH_MM_ZIPPED}
                                         : std::int16_t{bot_core::images_t::DEPTH_MM});
     images.images.push_back(zipped && !frame.depth_zipped.empty()
@@ -265,9 +261,18 @@ void SensorShell::publish(const SensorFrame& frame) {
                                 : messages::depth_image_message(frame.depth, frame.utime,
                                                                 zipped ? messages::DepthEncoding::kZipped
                                                                        : messages::DepthEncoding::kRaw));
+    images.n_images = static_cast<std::int32_t>(images.images.size());
+    return images;
+}
+
+void SensorShell::publish(const SensorFrame& frame) {
+    const messages::ModuleStatus::Work work(status_);
+    if (camera_seq_ == 0 || camera_is_due(frame.utime)) publish_camera(frame.utime);
+    for (const Acceleration& reading : frame.accelerations)
+        bus_.publish(messages::channels::kAcceleration, messages::to_message(reading));
+    bot_core::images_t images = images_of(frame, source_->camera(), options_);
     messages::set_seq(images.images.back(), static_cast<std::uint32_t>(frames_));
     if (sender_) messages::set_sender(images.images.back(), *sender_);
-    images.n_images = static_cast<std::int32_t>(images.images.size());
     bus_.publish(messages::channels::kFrame, images);
     last_utime_ = frame.utime;
     ++frames_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <bot_core/images_t.hpp>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -102,6 +103,10 @@ class SensorShell : public messages::Shell {
     std::string trouble_;      ///< of a live camera, now
     std::string first_fault_;  ///< of a frame that could not be used
 };
+
+/// A frame's images as they are sent, without what tells one message from another (number, sender).
+bot_core::images_t images_of(const SensorFrame& frame, const CameraInfo& camera,
+                             const SensorShellOptions& options);
 
 /// rate and speed. Refers to `options`, which must outlive it.
 OptionList pacing_of(SensorShellOptions& options);

@@ -28,6 +28,38 @@ using Json = nlohmann::json;
 class RunTest : public test::Programs {
   protected:
     using Result = Outcome;
+
+    /// One, two and four threads: the same files, and the same said of what is wrong and lost.
+    void expect_same_for_all_threads(const std::string& input, const std::string& options = {}) {
+        const std::string name = "same" + std::to_string(++inputs_) + "_";
+        Json first;
+        std::string said;
+        for (const char* threads : {"1", "2", "4"}) {
+            const auto result =
+                run("planemap-run", "'" + input + "' --quiet --size-resolutions 0.1 --output " +
+                                        path(name + threads) + " --threads " + threads + " " + options);
+            ASSERT_EQ(result.exit_code, 0) << result.err;
+            const Json report = this->report(name + threads);
+            if (first.is_null()) first = report;
+            if (said.empty()) said = result.err;
+            for (const char* file :
+                 {"trajectory.txt", "planes.json", "plane_map.lcmlog", "octomap.bt", "points.ply"})
+                EXPECT_EQ(read_file(path(name + "1/" + file)), read_file(path(name + threads + "/" + file)))
+                    << input << ", " << threads << " threads: " << file;
+            for (const char* key :
+                 {"frames", "tracked", "lost", "keyframes", "loop_closures", "losses", "warnings"})
+                EXPECT_EQ(report.at(key), first.at(key)) << input << ", " << threads << " threads: " << key;
+            for (const char* stage : {"decode", "segmentation", "odometry"})
+                EXPECT_EQ(report.at("stages_ms").at(stage).at("count"),
+                          first.at("stages_ms").at(stage).at("count"))
+                    << stage;
+            EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'),
+                      std::count(said.begin(), said.end(), '\n'))
+                << result.err;
+        }
+    }
+
+    int inputs_ = 0;
 };
 
 /// A run of 60 frames tells of each how the maps grew, and the points say what the shares say.
@@ -408,6 +440,23 @@ void write_odd_folder(const std::filesystem::path& folder) {
     write_file(folder / "camera.json",
                R"({"depth_camera": {"width": 160, "height": 120, "fx": 130, "fy": 130, "cx": 80, "cy": 60},
                    "depth_units_per_metre": 1000, "sensor": "kinect1"})");
+}
+
+TEST_F(RunTest, AnyNumberOfThreadsGivesTheSameBytes) {
+    expect_same_for_all_threads("sim:office?frames=40");
+    write_odd_folder(folder_ / "odd");
+    expect_same_for_all_threads(path("odd"));
+    const Result made = run("planemap-simulate", "'sim:office?frames=30' --output " + path("x.lcmlog"));
+    ASSERT_EQ(made.exit_code, 0) << made.err;
+    std::string log = read_file(path("x.lcmlog"));
+    for (std::size_t at = log.size() / 2; at < log.size() / 2 + 40; ++at) log[at] = '?';  // within a frame
+    write_file(path("x.lcmlog"), log);
+    expect_same_for_all_threads(path("x.lcmlog"), "--frames 2:25");
+}
+
+TEST_F(RunTest, AnyNumberOfThreadsGivesTheSameBytesOfARecording) {
+    PLANEMAP_NEEDS_DATA("redkitchen");
+    expect_same_for_all_threads(test::data_folder("redkitchen"), "--frames 0:60");
 }
 
 TEST_F(RunTest, AnOddFolderIsMappedAndWhatIsWrongInItIsSaid) {

@@ -2,12 +2,16 @@
 // planemap-run: a recording to a plane map, all modules in one process.
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <opencv2/core/utility.hpp>
+#include <thread>
 
 #include "core/standard_output.hpp"
 #include "core/trajectory_file.hpp"
 #include "messages/camera_flag.hpp"
 #include "pipeline/pipeline.hpp"
+#include "pipeline/preparation.hpp"
 #include "run/depth_watch.hpp"
 #include "run/growth.hpp"
 #include "run/input.hpp"
@@ -28,8 +32,29 @@ struct RunOptions {
     sensor::SourceOptions source;
     bool no_octomap = false, quiet = false, verbose = false;
     std::optional<std::uint64_t> seed;
+    int threads = 0;
     pipeline::PipelineOptions pipeline;
 };
+
+OptionList thread_options(RunOptions& options) {
+    OptionList list("Threads");
+    list.add(
+        "threads", options.threads, {0, 64},
+        "Threads of the whole run; they do not change the result. All but the first read, decode and "
+        "segment the next frames ahead. 1 leaves the other cores alone; 0: 2, or 1 where there is one core, "
+        "which suits a robot of two weak ones");
+    return list;
+}
+
+/// The number of threads that --threads asks for: it holds for the libraries, too.
+int rule_threads(RunOptions& options) {
+    const int threads =
+        options.threads > 0 ? options.threads : std::clamp<int>(std::thread::hardware_concurrency(), 1, 2);
+    int& rebuild = options.pipeline.map.map.threads;
+    rebuild = std::min(rebuild, threads);
+    cv::setNumThreads(1);  // frames side by side give more than pieces of one
+    return threads;
+}
 
 OptionList report_options(RunOptions& options) {
     OptionList list("Report");
@@ -66,6 +91,7 @@ void add_run_flags(messages::Flags& flags, RunOptions& options) {
     flags.add("no-octomap", options.no_octomap, "Do not build the OctoMap to compare with");
     flags.add("q,quiet", options.quiet, "No progress lines");
     flags.add("v,verbose", options.verbose, "Log more");
+    flags.add(thread_options(options));
     flags.add(report_options(options));
     flags.add(camera::options_of(options.source.device.options), "camera-");
     flags.add(options_of(options.pipeline.segmentation), "segmentation-");
@@ -167,6 +193,7 @@ int run(RunOptions options, const nlohmann::ordered_json& about) {
     options.pipeline.with_octomap = !options.no_octomap;
     options.pipeline.camera = options.camera.read();
     if (!options.poses.empty()) options.pipeline.poses = read_given_poses(options.poses);
+    const int threads = rule_threads(options);
     options.source.camera = options.pipeline.camera;
     options.source.motion_channel = options.pipeline.odometry.motion.channel;
     if (!options.frames.empty()) options.source.frames = parse_frame_range(options.frames);
@@ -176,7 +203,8 @@ int run(RunOptions options, const nlohmann::ordered_json& about) {
     messages::Bus bus("memq://");
     pipeline::Pipeline pipeline(bus, options.pipeline);
     const DepthWatch depth(pipeline.decoder());
-    const std::unique_ptr<Input> input = open_input(options.input, bus, options.source);
+    pipeline::Preparation preparation(pipeline.decoder(), options.pipeline.segmentation, threads);
+    const std::unique_ptr<Input> input = open_input(options.input, bus, options.source, &preparation);
     ResultFolder folder(options.output, result_names(options.output, *input));
     warn(folder.take_notes());
 
