@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <random>
 
 #include "core/files.hpp"
 #include "messages/channels.hpp"
@@ -143,6 +144,44 @@ TEST_F(Losses, TheSecondOfTwoSendersIsNamedAndChangesNothing) {
         EXPECT_EQ(count(err_, "lost 10 frames of another sender so far"), 1u) << "once, not by each module";
         EXPECT_NE(out_.find("frames of another sender (segmentation, odometry)"), std::string::npos) << out_;
         EXPECT_EQ(read_file(folder_ / c.name / "planes.json"), planes) << c.name;
+    }
+}
+
+/// One frame in fifty, anywhere: what a busy network or sensor leaves out.
+std::vector<messages::LogEvent> without_two_percent(const std::vector<messages::LogEvent>& all,
+                                                    std::uint32_t seed) {
+    std::mt19937 random(seed);
+    std::vector<messages::LogEvent> kept;
+    for (const messages::LogEvent& event : all) {
+        if (event.channel != messages::channels::kFrame || random() % 50 != 0) kept.push_back(event);
+    }
+    return kept;
+}
+
+TEST_F(Losses, TwoPercentOfTheFramesCostNoAccuracy) {
+    const std::string world = "sim:office?frames=300&width=320&height=240";
+    const std::vector<messages::LogEvent> all = events(world);
+    const auto judged = [&](const std::vector<messages::LogEvent>& some, const std::string& name) {
+        map(some, name);
+        EXPECT_EQ(run("planemap-evaluate", "'" + world + "' " + path(name) + " --json " + path("json")), 0)
+            << read_file(path("err"));
+        Json figures = Json::parse(read_file(path("json")));
+        figures["tracked"] = report_.at("tracked");
+        return figures;
+    };
+    const Json whole = judged(all, "whole");
+    const double ate_m = whole.at("/ate/rmse"_json_pointer);
+    const int found = whole.at("/map/found"_json_pointer);
+    for (const std::uint32_t seed : {1u, 2u}) {
+        const std::vector<messages::LogEvent> some = without_two_percent(all, seed);
+        const std::size_t dropped = all.size() - some.size();
+        EXPECT_GE(dropped, 3u);
+        const Json dented = judged(some, "dented-" + std::to_string(seed));
+        EXPECT_EQ(dented.at("tracked"), 300 - dropped) << "no frame beside a gap is lost";
+        EXPECT_LT(dented.at("/ate/rmse"_json_pointer), 1.5 * ate_m + 0.002);
+        EXPECT_GE(dented.at("/map/found"_json_pointer), found - 1);
+        EXPECT_LE(dented.at("/map/spurious"_json_pointer),
+                  1 + whole.at("/map/spurious"_json_pointer).get<int>());
     }
 }
 
