@@ -44,7 +44,10 @@ set(CPACK_COMPONENT_RUNTIME_DESCRIPTION
     "A trajectory and a map made only of planes from RGB-D cameras over LCM: the modules as processes, planemap-run, and its tools.")
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME planemap-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
-set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "liblcm-dev, libeigen3-dev, libspdlog-dev, libcli11-dev, nlohmann-json3-dev, libpcl-dev, \
+set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "liblcm-dev, libeigen3-dev, libspdlog-dev, libcli11-dev, nlohmann-json3-dev, \
 libopencv-dev, libceres-dev, liboctomap-dev, libturbojpeg0-dev, libdeflate-dev, libspng-dev, libopenni2-dev, libfreenect-dev")
+if(PLANEMAP_PCL)
+    string(APPEND CPACK_DEBIAN_DEV_PACKAGE_DEPENDS ", libpcl-dev")
+endif()
 set(CPACK_COMPONENT_DEV_DESCRIPTION "Libraries, headers, LCM types and the CMake package of planemap, and examples.")
 include(CPack)

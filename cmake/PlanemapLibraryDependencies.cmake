@@ -2,15 +2,6 @@
 # What the libraries of modules/ need, from Debian's packages; read by the build and by find_package(planemap). Only what
 # CMake lacks a config for is found by hand.
 
-find_package(Eigen3 3.4 REQUIRED NO_MODULE)
-find_package(Ceres REQUIRED)
-find_package(octomap REQUIRED)
-find_package(spdlog REQUIRED)
-find_package(CLI11 REQUIRED)
-find_package(nlohmann_json REQUIRED)
-find_package(Threads REQUIRED)
-find_package(OpenCV REQUIRED COMPONENTS core imgproc features2d video)
-
 # find_library_target(TARGET HEADER LIBRARY [FOLDER of the header]): an imported target for a library without a CMake
 # config.
 function(find_library_target target header library)
@@ -24,15 +15,31 @@ function(find_library_target target header library)
     target_include_directories(${target} SYSTEM INTERFACE ${${id}_INCLUDE})
     target_link_libraries(${target} INTERFACE ${${id}_LIBRARY})
 endfunction()
-find_library_target(lcm::lcm lcm/lcm-cpp.hpp lcm)
-find_library_target(turbojpeg::turbojpeg turbojpeg.h turbojpeg)
-find_library_target(libdeflate::libdeflate libdeflate.h deflate)
-find_library_target(spng::spng spng.h spng)
-find_library_target(OpenNI2::OpenNI2 OpenNI.h OpenNI2 openni2)
-find_library_target(freenect::freenect libfreenect.h freenect)
+
+# where_built(MODULE COMMAND...): the command, where PLANEMAP_MODULES leaves the module in.
+macro(where_built module command)
+    if(NOT PLANEMAP_MODULES OR "${module}" IN_LIST PLANEMAP_MODULES)
+        cmake_language(CALL ${command} ${ARGN})
+    endif()
+endmacro()
+
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(nlohmann_json REQUIRED)
+find_package(Threads REQUIRED)
+where_built(messages find_package spdlog REQUIRED)
+where_built(messages find_package CLI11 REQUIRED)
+where_built(messages find_library_target lcm::lcm lcm/lcm-cpp.hpp lcm)
+where_built(messages find_library_target turbojpeg::turbojpeg turbojpeg.h turbojpeg)
+where_built(messages find_library_target libdeflate::libdeflate libdeflate.h deflate)
+where_built(sensor find_library_target spng::spng spng.h spng)
+where_built(camera find_library_target OpenNI2::OpenNI2 OpenNI.h OpenNI2 openni2)
+where_built(camera find_library_target freenect::freenect libfreenect.h freenect)
+where_built(odometry find_package OpenCV REQUIRED COMPONENTS core imgproc features2d video)
+where_built(graph find_package Ceres REQUIRED)
+where_built(octomap find_package octomap REQUIRED)
 
 # PCL's own config drags in VTK, Qt and MPI; the paper's RANSAC needs four of its libraries.
-if(TARGET planemap_pcl)
+if(NOT PLANEMAP_PCL OR TARGET planemap_pcl)
     return()
 endif()
 find_path(PCL_INCLUDE pcl/point_types.h PATH_SUFFIXES pcl-1.13 pcl-1.14 pcl-1.15 REQUIRED)

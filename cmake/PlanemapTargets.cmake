@@ -16,8 +16,12 @@ elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
 endif()
 # Eigen aligns to 16 bytes whatever the instruction set, as Debian's PCL, Ceres and OpenCV were built to.
 add_compile_definitions(EIGEN_MAX_ALIGN_BYTES=16)
-# No fused multiply-add behind the reader's back: the same bytes out on every machine of an architecture.
+# No fused multiply-add behind the reader's back: the same bytes out on every machine. Eigen fuses by hand where arm64 says
+# that it can.
 add_compile_options(-ffp-contract=off)
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64")
+    add_compile_options(-U__ARM_FEATURE_FMA)
+endif()
 
 if(PLANEMAP_SANITIZE)
     add_compile_options(-fsanitize=${PLANEMAP_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all -g1)

@@ -29,7 +29,8 @@ OptionList options_of(RansacOptions& options);
 
 /// The segmenter with PCL's RANSAC. A region's points, and so its N, moments and RMS, are the subsampled
 /// inliers; `labels` covers all pixels: one carries its sample's label if it lies within the thickness too.
-/// The same seed gives the same regions. Throws std::invalid_argument for bad options.
+/// The same seed gives the same regions. Throws std::invalid_argument for bad options, and for any where
+/// planemap was built without PCL (PLANEMAP_PCL=OFF).
 std::unique_ptr<Segmenter> make_ransac_segmenter(const RansacOptions& options, std::uint64_t seed);
 
 }  // namespace planemap::segmentation

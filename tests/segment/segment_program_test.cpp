@@ -46,12 +46,21 @@ class SegmentProgram : public testing::Test {
 };
 
 TEST_F(SegmentProgram, WritesLabelsAndRegionsOfEachImage) {
-    const Result result =
-        run("a.png --camera camera.json b.png --output out --overlay --repeat 2 --method ransac");
+    const Result result = run("a.png --camera camera.json b.png --output out --overlay --repeat 2");
     EXPECT_EQ(result.exit_code, 0) << result.err;
     EXPECT_THAT(result.out, HasSubstr("2 of 2 images"));
     for (const char* file : {"out/a.png", "out/a.json", "out/a.overlay.png", "out/b.png", "out/b.json"})
         EXPECT_TRUE(exists(file)) << file;
+}
+
+TEST_F(SegmentProgram, KnowsThePapersMethodOrSaysThatItIsLeftOut) {
+    const Result result = run("a.png --camera camera.json --output out --method ransac");
+#ifdef PLANEMAP_PCL
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+#else
+    EXPECT_NE(result.exit_code, 0);
+    EXPECT_THAT(result.err, HasSubstr("without PCL"));
+#endif
 }
 
 TEST_F(SegmentProgram, GoesOnAfterABadImageAndSaysSoInTheExitCode) {
