@@ -80,6 +80,12 @@ class Footprints {
     bool joined_v(int u, int v, int dv) const { return joints_.below(u, dv > 0 ? v : v - 1) != 0; }
 
     float units_;
+    /// m_ (x, y, 1), summed in one order on every machine: Eigen's own differs where vectors hold two floats.
+    Eigen::Vector3f direction(float x, float y) const {
+        const auto row = [&](int i) { return m_(i, 0) * x + (m_(i, 1) * y + m_(i, 2)); };
+        return {row(0), row(1), row(2)};
+    }
+
     Eigen::Matrix3f m_;
     Eigen::Vector3f t_;
     InverseDepth depth_;
@@ -108,7 +114,7 @@ void Footprints::share(int v, Shared& row) const {
                        *up_below = joints_.below.row(v - 1);
     const float mx = m_(0, 0), my = m_(1, 0), mz = m_(2, 0), tx = t_.x(), ty = t_.y(), tz = t_.z();
     const Eigen::Vector3f first =
-        m_ * Eigen::Vector3f(-0.5f - static_cast<float>(border_), static_cast<float>(v - border_) - 0.5f, 1);
+        direction(-0.5f - static_cast<float>(border_), static_cast<float>(v - border_) - 0.5f);
     const float first_x = first.x(), first_y = first.y(), first_z = first.z();
     const int end = depth_.value.width - border_ + 1;
     float *const w = row.w.data(), *const x = row.x.data(), *const y = row.y.data();
@@ -150,9 +156,9 @@ float Footprints::corner_value(int u, int v, int du, int dv) const {
 
 ColorPoint Footprints::corner(int u, int v, int du, int dv) const {
     const float w = corner_value(u, v, du, dv);
-    const Eigen::Vector3f p(static_cast<float>(u - border_) + 0.5f * static_cast<float>(du),
-                            static_cast<float>(v - border_) + 0.5f * static_cast<float>(dv), 1);
-    const Eigen::Vector3f q = m_ * p + t_ * w;
+    const Eigen::Vector3f q = direction(static_cast<float>(u - border_) + 0.5f * static_cast<float>(du),
+                                        static_cast<float>(v - border_) + 0.5f * static_cast<float>(dv)) +
+                              t_ * w;
     const float inverse = 1 / (q.z() > 0 ? q.z() : std::numeric_limits<float>::quiet_NaN());
     return {q.x() * inverse, q.y() * inverse, w * inverse};
 }
