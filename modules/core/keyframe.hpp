@@ -16,7 +16,7 @@ enum class TrackingStatus : std::int8_t {
     kLost = 0,     ///< no pose
     kTracked = 1,  ///< a pose, all directions determined
     kDegenerate =
-        2,       ///< a pose, some directions determined by the prediction only; the covariance says which
+        2,       ///< a pose, some directions known by the prediction only, or 3 sigma over 10 cm or 5 degrees
     kStale = 3,  ///< nothing new was seen: the last pose, and a covariance that grows
 };
 

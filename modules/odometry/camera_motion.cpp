@@ -17,6 +17,7 @@ CameraMotion::CameraMotion(const OdometryOptions& options)
     : acceleration_(options.acceleration),
       angular_acceleration_(options.angular_acceleration),
       max_prediction_s_(options.max_prediction_s),
+      stamp_jitter_s_(options.color_jitter_s),
       filter_(options.max_prediction_s) {}
 
 double CameraMotion::seconds_since_pose(std::int64_t utime) const {
@@ -90,12 +91,18 @@ Matrix6d CameraMotion::covariance_of_moment(const Located& located, const Twist&
     const Pose& camera_from_keyframe = located.track.alignment.camera_from_keyframe;
     // The keyframe's motion as seen from the camera.
     const Eigen::Vector3d turn = camera_from_keyframe.linear() * keyframe_velocity.tail<3>();
-    Twist change = velocity();
-    change.tail<3>() -= turn;
-    change.head<3>() -= camera_from_keyframe.linear() * keyframe_velocity.head<3>() +
-                        camera_from_keyframe.translation().cross(turn);
-    const Twist late = OdometryOptions::stamp_sigma_s * change;
-    Matrix6d covariance = late * late.transpose();
+    Twist at_keyframe;
+    at_keyframe << camera_from_keyframe.linear() * keyframe_velocity.head<3>() +
+                       camera_from_keyframe.translation().cross(turn),
+        turn;
+    Matrix6d covariance = Matrix6d::Zero();
+    const auto add = [&](double sigma_s, const Twist& rate) {
+        covariance += sigma_s * sigma_s * rate * rate.transpose();
+    };
+    // Late by any part of a time, and nothing of it is corrected: the mean is sqrt(3) sigma, the RMS two.
+    add(2 * OdometryOptions::stamp_sigma_s, velocity() - at_keyframe);
+    add(stamp_jitter_s_, velocity());
+    add(stamp_jitter_s_, at_keyframe);
     const double offset_s = located.track.by_features ? located.track.alignment.color_offset_s : 0;
     const double share = step_s_ > 0 ? std::min(1.0, std::abs(offset_s) / step_s_) : 0;
     covariance.diagonal() += 2 * filter_.jitter() + share * share * filter_.surprise();

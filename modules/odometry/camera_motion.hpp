@@ -40,8 +40,9 @@ class CameraMotion {
     void follow(std::int64_t utime, Located& located);
     /// What moments and jitter add to Located::covariance() of the frame that was followed last. Stamps may
     /// all be late by one and the same time, which matters as far as the camera moves otherwise now than at
-    /// the keyframe (keyframe_velocity, as velocity()); both frames jitter; and what colour shows is brought
-    /// to depth's moment by a velocity that is off by as much as motions were found to be.
+    /// the keyframe (keyframe_velocity, as velocity()); each stamp jitters by itself, which matters as far as
+    /// the camera moves at all; both poses jitter; and what colour shows is brought to depth's moment by a
+    /// velocity that is off by as much as motions were found to be.
     Matrix6d covariance_of_moment(const Located& located, const Twist& keyframe_velocity) const;
     /// A frame has no pose: nothing is known of the motion any more.
     void lose();
@@ -49,7 +50,7 @@ class CameraMotion {
   private:
     Guess guess(std::int64_t utime, const Pose& odom_from_keyframe, bool moving) const;
 
-    double acceleration_, angular_acceleration_, max_prediction_s_;
+    double acceleration_, angular_acceleration_, max_prediction_s_, stamp_jitter_s_;
     MotionFilter filter_;          ///< of the last frame with a pose
     std::int64_t pose_utime_ = 0;  ///< of the last frame with a pose
     double step_s_ = 0;            ///< to it from the one before

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "odometry/odometry.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <utility>
 
@@ -17,6 +18,19 @@
 #include "odometry/relocaliser.hpp"
 
 namespace planemap::odometry {
+namespace {
+
+/// Whether three standard deviations in any direction are less than 10 cm and 5 degrees.
+bool says_where(const Matrix6d& covariance) {
+    constexpr double kFar_m = 0.1, kFar_rad = 0.0873, kSigmas = 3;
+    const auto worst = [](const Eigen::Matrix3d& block) {
+        return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(block, Eigen::EigenvaluesOnly).eigenvalues()(2);
+    };
+    return kSigmas * kSigmas * worst(covariance.topLeftCorner<3, 3>()) < kFar_m * kFar_m &&
+           kSigmas * kSigmas * worst(covariance.bottomRightCorner<3, 3>()) < kFar_rad * kFar_rad;
+}
+
+}  // namespace
 
 class Odometry::State {
   public:
@@ -234,11 +248,12 @@ OdometryResult Odometry::State::follow(PreparedFrame& frame, Located& located) {
 
     OdometryResult result;
     OdometryEstimate& estimate = result.estimate;
-    estimate.status = located.track.degenerate ? TrackingStatus::kDegenerate : TrackingStatus::kTracked;
     estimate.odom_from_camera = located.odom_from_camera();
     estimate.keyframe_id = located.keyframe_id;
     estimate.keyframe_from_camera = located.keyframe_from_camera();
     estimate.covariance = last_measured_ + covariance_of_moment(located);
+    const bool is_sure = !located.track.degenerate && says_where(estimate.covariance);
+    estimate.status = is_sure ? TrackingStatus::kTracked : TrackingStatus::kDegenerate;
     estimate.features = located.track.tried;
     estimate.inliers = located.track.inliers;
     estimate.residual_px = located.track.alignment.residual_px;

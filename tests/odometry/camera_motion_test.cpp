@@ -145,8 +145,26 @@ TEST_F(CameraMotionTest, LateStampsMatterWhereTheMotionChanged) {
     const Located located = located_at(0.29);
     const double same = motion_.covariance_of_moment(located, motion_.velocity())(0, 0);
     const double other = motion_.covariance_of_moment(located, Twist::Zero())(0, 0);
-    const double late = OdometryOptions::stamp_sigma_s * motion_.velocity()(0);
-    EXPECT_NEAR(other - same, late * late, 1e-9);
+    const double late = 2 * OdometryOptions::stamp_sigma_s * motion_.velocity()(0);
+    const double jitter = OdometryOptions{}.color_jitter_s * motion_.velocity()(0);
+    EXPECT_NEAR(other - same, late * late - jitter * jitter, 1e-9) << "the keyframe's own stamp at rest";
+}
+
+TEST_F(CameraMotionTest, StampsThatJitterMatterAsFarAsTheCameraMoves) {
+    OdometryOptions steady;
+    steady.color_jitter_s = 0;
+    CameraMotion exact{steady};
+    exact.start(0);
+    for (int i = 1; i < 30; ++i) {
+        Located located = located_at(0.01 * i);
+        exact.follow(i * kPeriod, located);
+    }
+    walk(30);
+    const Located located = located_at(0.29);
+    const double both = motion_.covariance_of_moment(located, motion_.velocity())(0, 0) -
+                        exact.covariance_of_moment(located, exact.velocity())(0, 0);
+    const double jitter = OdometryOptions{}.color_jitter_s * motion_.velocity()(0);
+    EXPECT_NEAR(both, 2 * jitter * jitter, 1e-9) << "the frame's and the keyframe's";
 }
 
 }  // namespace

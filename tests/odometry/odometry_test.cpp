@@ -164,6 +164,24 @@ TEST_F(Room, FollowsAKnownMotion) {
     EXPECT_LT(keyframes, 30);
 }
 
+TEST_F(Room, AFastTurnWhosePoseMayBeFarOffSaysSo) {
+    constexpr int kAtRest = 5, kTurning = 5;
+    constexpr double kStep = 0.06;  // radians a frame: a millisecond is a tenth of a degree
+    OdometryResult result;
+    for (int i = 0; i < kAtRest + kTurning; ++i) {
+        const double angle = kStep * std::max(0, i - kAtRest + 1);
+        Pose room_from_camera = Pose::Identity();
+        room_from_camera.linear() = so3_exp({0, angle, 0});
+        result = feed(render_room(camera_, room_from_camera), (i + 1) * kPeriod);
+        expect_near(result.estimate.odom_from_camera, room_from_camera, 0.02, 0.02);
+        if (i < kAtRest) {
+            EXPECT_EQ(result.estimate.status, TrackingStatus::kTracked) << "frame " << i;
+        }
+    }
+    EXPECT_EQ(result.estimate.status, TrackingStatus::kDegenerate);
+    EXPECT_GT(3 * std::sqrt(result.estimate.covariance(4, 4)), 0.0873) << "5 degrees";
+}
+
 TEST_F(Room, KeyframesAreChainedByTheirEdges) {
     std::vector<Keyframe> keyframes;
     for (int i = 0; i < 30; ++i) {
