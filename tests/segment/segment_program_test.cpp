@@ -32,7 +32,8 @@ class SegmentProgram : public testing::Test {
         return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), read_file(out),
                 read_file(err)};
     }
-    void expect_error(const std::string& arguments, const testing::Matcher<std::string>& message) const {
+    template <typename Matcher>
+    void expect_error(const std::string& arguments, const Matcher& message) const {
         const Result result = run(arguments);
         EXPECT_TRUE(result.exit_code == 1 || result.exit_code == 2) << arguments << result.exit_code;
         EXPECT_THAT(result.err, message) << arguments;
