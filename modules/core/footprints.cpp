@@ -79,13 +79,13 @@ class Footprints {
     bool joined_u(int u, int v, int du) const { return joints_.right(du > 0 ? u : u - 1, v) != 0; }
     bool joined_v(int u, int v, int dv) const { return joints_.below(u, dv > 0 ? v : v - 1) != 0; }
 
-    float units_;
     /// m_ (x, y, 1), summed in one order on every machine: Eigen's own differs where vectors hold two floats.
     Eigen::Vector3f direction(float x, float y) const {
         const auto row = [&](int i) { return m_(i, 0) * x + (m_(i, 1) * y + m_(i, 2)); };
         return {row(0), row(1), row(2)};
     }
 
+    float units_;
     Eigen::Matrix3f m_;
     Eigen::Vector3f t_;
     InverseDepth depth_;
