@@ -132,7 +132,9 @@ int PoseGraph::Impl::same_chain(const Keyframe& keyframe) const {
 /// `step` leads from the node; `detour` is how far it may be off besides.
 void PoseGraph::Impl::append_by_odometry(int from, KeyframeNode node, const Pose& step,
                                          const Matrix6d& covariance, const Drift& detour) {
-    topology_.add_odometry(odometry_tie(options_, from, keyframes_.size(), step, covariance, detour));
+    const double passed_s = static_cast<double>(node.utime - keyframes_[from].utime) * 1e-6;
+    topology_.add_odometry(
+        odometry_tie(options_, from, keyframes_.size(), step, within_reach(covariance, passed_s), detour));
     keyframes_.add(std::move(node), orthonormalised(keyframes_.pose(from) * step), from);
 }
 

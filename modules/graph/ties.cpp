@@ -63,6 +63,15 @@ Drift worst_sigmas(const Matrix6d& covariance) {
 
 }  // namespace
 
+Matrix6d within_reach(const Matrix6d& covariance, double seconds) {
+    constexpr double kSpeed = 1;  // m/s and rad/s
+    if (!covariance.allFinite() || !(seconds > 0)) return covariance;
+    const double reach = kSpeed * seconds;
+    const Matrix6d sum = covariance + reach * reach * Matrix6d::Identity();
+    const Matrix6d less = covariance - covariance * sum.ldlt().solve(covariance);
+    return 0.5 * (less + less.transpose());
+}
+
 Tie odometry_tie(const GraphOptions& options, int from, int to, const Pose& step, const Matrix6d& covariance,
                  const Drift& detour) {
     const double drift =

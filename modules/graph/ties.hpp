@@ -35,6 +35,12 @@ struct Tie {
     int other(int node) const { return edge.from == node ? edge.to : edge.from; }
 };
 
+/// The covariance of a step (translation, rotation), together with what is known of any camera in a building:
+/// that in so many seconds it goes no further than at some speed, 1 m/s and 1 rad/s (one sigma), from where
+/// it is said to be. Where odometry saw nothing of a direction its covariance has no end, and planes that are
+/// parallel but for their noise would bend the graph along it. Not finite, or no time: as it is.
+Matrix6d within_reach(const Matrix6d& covariance, double seconds);
+
 /// Odometry's measurement: the step, with its covariance, leads from node `from` to node `to`. `detour` is
 /// how far it may be off besides, when the keyframe that odometry named has gone and another stands for it.
 Tie odometry_tie(const GraphOptions& options, int from, int to, const Pose& step, const Matrix6d& covariance,

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <opencv2/video/tracking.hpp>
+#include <optional>
 
 #include "odometry/features.hpp"
 
@@ -53,14 +54,14 @@ class Patch {
     float values_[kSide][kRow];
 };
 
-/// True when both images show the same there: their patches correlate, whatever light and contrast. At half
-/// size, where a dim texture stands out from the noise. True near the border, where nothing can be said.
-bool looks_alike(const FlowPyramid& a, const cv::Point2f& at_a, const FlowPyramid& b,
-                 const cv::Point2f& at_b) {
+/// Whether both images show the same there: their patches correlate, whatever light and contrast. At half
+/// size, where a dim texture stands out from the noise. Nothing near the border, where nothing can be said.
+std::optional<bool> look_alike(const FlowPyramid& a, const cv::Point2f& at_a, const FlowPyramid& b,
+                               const cv::Point2f& at_b) {
     constexpr float kLeastCorrelation = 0.4f;
-    if (a.levels() < 2 || b.levels() < 2) return true;
+    if (a.levels() < 2 || b.levels() < 2) return std::nullopt;
     Patch here, there;
-    if (!here.cut(a.level(1), 0.5f * at_a) || !there.cut(b.level(1), 0.5f * at_b)) return true;
+    if (!here.cut(a.level(1), 0.5f * at_a) || !there.cut(b.level(1), 0.5f * at_b)) return std::nullopt;
     return here.dot(there) >= kLeastCorrelation * std::sqrt(here.dot(here) * there.dot(there));
 }
 
@@ -103,22 +104,31 @@ FlowPyramid with_derivatives(const FlowPyramid& pyramid, int window_px) {
     return both;
 }
 
-std::vector<char> track_flow(const FlowPyramid& from, const FlowPyramid& to,
-                             const std::vector<cv::Point2f>& from_pixels, std::vector<cv::Point2f>& to_pixels,
-                             int window_px, int levels, int iterations) {
-    std::vector<char> found(from_pixels.size(), 0);
-    if (from.empty() || to.empty() || from_pixels.empty()) return found;
+bool FlowResult::is_by_chance() const {
+    constexpr double kShare = 0.25, kSigmas = 3;
+    const auto tried = static_cast<double>(found.size());
+    return alike <= kShare * tried + kSigmas * std::sqrt(kShare * (1 - kShare) * tried);
+}
+
+FlowResult track_flow(const FlowPyramid& from, const FlowPyramid& to,
+                      const std::vector<cv::Point2f>& from_pixels, std::vector<cv::Point2f>& to_pixels,
+                      int window_px, int levels, int iterations) {
+    FlowResult result;
+    result.found.assign(from_pixels.size(), 0);
+    if (from.empty() || to.empty() || from_pixels.empty()) return result;
     std::vector<unsigned char> status;
     const cv::TermCriteria stop(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, iterations, 0.03);
     cv::calcOpticalFlowPyrLK(from.images, to.images, from_pixels, to_pixels, status, cv::noArray(),
                              {window_px, window_px}, levels - 1, stop, cv::OPTFLOW_USE_INITIAL_FLOW, 1e-4);
     const auto width = static_cast<float>(to.images[0].cols), height = static_cast<float>(to.images[0].rows);
-    for (std::size_t i = 0; i < found.size(); ++i) {
+    for (std::size_t i = 0; i < result.found.size(); ++i) {
         const cv::Point2f& p = to_pixels[i];
-        found[i] = status[i] && p.x >= 0 && p.y >= 0 && p.x <= width - 1 && p.y <= height - 1 &&
-                   looks_alike(from, from_pixels[i], to, p);
+        if (!(status[i] && p.x >= 0 && p.y >= 0 && p.x <= width - 1 && p.y <= height - 1)) continue;
+        const std::optional<bool> alike = look_alike(from, from_pixels[i], to, p);
+        result.found[i] = alike.value_or(true);
+        result.alike += alike.value_or(false);
     }
-    return found;
+    return result;
 }
 
 }  // namespace planemap::odometry

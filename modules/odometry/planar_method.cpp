@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "odometry/planar_method.hpp"
 
+#include <vector>
+
 #include "odometry/keyframe_choice.hpp"
 
 namespace planemap::odometry {
@@ -24,20 +26,21 @@ std::optional<Located> PlanarMethod::locate(const PreparedFrame& frame, const Su
         return known.relocaliser.locate(frame, known.motion, known.keyframes);
     }
     const LocalKeyframe& keyframe = known.keyframes.current();
-    Guess guess = known.motion.predict(frame.utime, keyframe.odom_from_keyframe);
+    const Guess guess = known.motion.predict(frame.utime, keyframe.odom_from_keyframe);
+    std::optional<Guess> better;
     std::optional<Track> track;
     if (!keyframe.points.empty() && !frame.pyramid.empty()) {
         track = track_points(options_, keyframe, frame, guess, options_.flow_levels);
         if (!track && !is_blind()) {
-            guess = coarse_guess(options_, keyframe, frame, guess, last_dense_,
-                                 keyframe.odom_from_keyframe.inverse() * known.motion.odom_from_camera());
-            track = second_chances(frame, keyframe, guess);
+            better = coarse_guess(options_, keyframe, frame, guess, last_dense_,
+                                  keyframe.odom_from_keyframe.inverse() * known.motion.odom_from_camera());
+            track = second_chances(frame, keyframe, *better);
         }
         if (!track && !is_blind())
             if (std::optional<Located> again = known.relocaliser.locate(frame, known.motion, known.keyframes))
                 return again;
     }
-    if (!track) track = track_geometry(frame, known, guess);
+    if (!track) track = track_geometry(frame, known, guess, better);
     if (!track) return std::nullopt;
     return Located{std::move(*track), keyframe.id, keyframe.odom_from_keyframe};
 }
@@ -51,9 +54,12 @@ std::optional<Track> PlanarMethod::second_chances(const PreparedFrame& frame, co
     return track_points(options_, keyframe, frame, better, search);
 }
 
-/// Depth alone: from the guess, from where the camera was, and from where its motion would have led it.
+/// Depth alone: from the guess, from the one by the whole image (which means nothing in the dark, but takes
+/// the guess's place where no motion is known), from where the camera was, and from where its motion would
+/// have led it.
 std::optional<Track> PlanarMethod::track_geometry(const PreparedFrame& frame, const Surroundings& known,
-                                                  const Guess& guess) const {
+                                                  const Guess& guess,
+                                                  const std::optional<Guess>& by_image) const {
     const double elapsed = known.motion.seconds_since_pose(frame.utime);
     const bool fresh = elapsed < kStillPredicted;
     const LocalKeyframe& keyframe = known.keyframes.current();
@@ -62,7 +68,11 @@ std::optional<Track> PlanarMethod::track_geometry(const PreparedFrame& frame, co
     carried_on.camera_from_keyframe =
         pose_from_twist(elapsed * known.motion.velocity()) * still.camera_from_keyframe;
     std::optional<Track> best;
-    for (const Guess& start : {guess, still, carried_on}) {
+    std::vector<Guess> starts{guess, still, carried_on};
+    const bool is_motion_known = !guess.velocity_gain.isZero();
+    if (by_image && !is_motion_known) starts[0] = *by_image;
+    if (by_image && is_motion_known) starts.insert(starts.begin() + 1, *by_image);
+    for (const Guess& start : starts) {
         std::optional<Track> track = track_surface(options_, keyframe, frame, start);
         if (!track || (!fresh && (track->degenerate || track->inliers < kSureShare * track->tried))) continue;
         if (!best || track->inliers * best->tried > best->inliers * track->tried) best = std::move(track);

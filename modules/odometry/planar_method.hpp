@@ -32,7 +32,7 @@ class PlanarMethod : public Method {
     std::optional<Track> second_chances(const PreparedFrame& frame, const LocalKeyframe& keyframe,
                                         const Guess& better) const;
     std::optional<Track> track_geometry(const PreparedFrame& frame, const Surroundings& known,
-                                        const Guess& guess) const;
+                                        const Guess& guess, const std::optional<Guess>& by_image) const;
     /// True when features have not been found for some frames, and are not looked for any harder in this one.
     bool is_blind() const;
 

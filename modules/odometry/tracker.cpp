@@ -18,6 +18,7 @@ constexpr int kSurfaceSteps = 8;       // with the wide gate, and as many with t
 constexpr int kCoarseSteps = 10;       // at each pyramid level
 constexpr double kCoarseStep = 0.002;  // metres and radians; smaller steps end a level
 constexpr double kCoarseGate = 0.15;   // metres from the surface
+constexpr int kFewPoints = 2;          // times the least that a pose needs
 
 /// The points that flow found, as terms; depth is read where the point was at the depth image's time.
 std::vector<PointTerm> make_terms(const OdometryOptions& options, const LocalKeyframe& keyframe,
@@ -178,6 +179,7 @@ namespace {
 struct PointFlow {
     std::vector<cv::Point2f> pixels;
     std::vector<char> found;
+    bool is_by_chance = false;  ///< see FlowResult
 
     explicit PointFlow(std::size_t points) : pixels(points), found(points, 0) {}
     std::vector<std::size_t> found_points() const {
@@ -206,13 +208,13 @@ PointFlow find_points(const OdometryOptions& options, const LocalKeyframe& keyfr
         from.push_back((*search.from_pixels)[i]);
         to.emplace_back(static_cast<float>(pixel.x()), static_cast<float>(pixel.y()));
     }
-    const std::vector<char> found_here =
-        track_flow(*search.from, frame.pyramid, from, to, options.flow_window_px, search.levels,
-                   options.flow_iterations);
+    const FlowResult here = track_flow(*search.from, frame.pyramid, from, to, options.flow_window_px,
+                                       search.levels, options.flow_iterations);
     PointFlow flow(keyframe.points.size());
+    flow.is_by_chance = here.is_by_chance();
     for (std::size_t i = 0; i < indices.size(); ++i) {
         flow.pixels[indices[i]] = to[i];
-        flow.found[indices[i]] = found_here[i];
+        flow.found[indices[i]] = here.found[i];
     }
     return flow;
 }
@@ -221,7 +223,7 @@ PointFlow find_points(const OdometryOptions& options, const LocalKeyframe& keyfr
 std::optional<Track> align_points(const OdometryOptions& options, const LocalKeyframe& keyframe,
                                   const PreparedFrame& frame, const Guess& guess, PointFlow flow) {
     const std::vector<std::size_t> indices = flow.found_points();
-    if (static_cast<int>(indices.size()) < options.min_inliers) return std::nullopt;
+    if (flow.is_by_chance || static_cast<int>(indices.size()) < options.min_inliers) return std::nullopt;
     const std::vector<PointTerm> terms = make_terms(options, keyframe, frame, guess, flow.pixels, indices);
     Alignment alignment = make_alignment(options, frame, guess);
     alignment.points = terms;
@@ -233,7 +235,10 @@ std::optional<Track> align_points(const OdometryOptions& options, const LocalKey
         geometry_terms(options, keyframe, frame, result.camera_from_keyframe, alignment.velocity);
     alignment.quadratics.insert(alignment.quadratics.end(), geometry.begin(), geometry.end());
     const AlignmentResult joint = align(alignment, result.camera_from_keyframe);
-    if (is_supported(options, joint, terms.size()) && joint.inliers > 0.8 * result.inliers) result = joint;
+    const bool agree = is_supported(options, joint, terms.size()) && joint.inliers > 0.8 * result.inliers;
+    // Many points are right where geometry is matched wrongly; few are as likely to be wrong themselves.
+    if (!agree && result.inliers < kFewPoints * options.min_inliers) return std::nullopt;
+    if (agree) result = joint;
 
     Track track;
     track.by_features = true;
@@ -275,39 +280,97 @@ std::optional<Track> track_points(const OdometryOptions& options, const LocalKey
     return track_points(options, keyframe, frame, guess, {&keyframe.pyramid, &pixels, nullptr, levels});
 }
 
+namespace {
+
+/// The camera against the keyframe's surface and planes.
+class SurfaceAlignment {
+  public:
+    SurfaceAlignment(const OdometryOptions& options, const LocalKeyframe& keyframe,
+                     const PreparedFrame& frame, const Guess& guess)
+        : options_(options),
+          keyframe_(keyframe),
+          frame_(frame),
+          guess_(guess),
+          pose_(guess.camera_from_keyframe) {}
+
+    /// From where it is, at first with a wide gate if asked, with more information on the guess. False when
+    /// it cannot be solved.
+    bool settle(bool wide_first, const Matrix6d& steadying) {
+        for (int i = wide_first ? 0 : kSurfaceSteps; i < 2 * kSurfaceSteps; ++i) {
+            // Wide at first, then as narrow as the noise allows.
+            match_ = match_at(options_.surface_gate_m * (i < kSurfaceSteps ? 3 : 1));
+            Alignment alignment = make_alignment(options_, frame_, guess_);
+            alignment.quadratics[0].information += steadying;
+            alignment.quadratics.insert(alignment.quadratics.end(), match_.tiles.begin(), match_.tiles.end());
+            alignment.quadratics.push_back(match_planes(keyframe_.regions, frame_.regions, pose_,
+                                                        frame_.camera->noise, options_.plane_points));
+            result_ = align(alignment, pose_);
+            if (!result_.converged) return false;
+            const Twist step = twist_from_pose(result_.camera_from_keyframe * pose_.inverse());
+            pose_ = result_.camera_from_keyframe;
+            if (step.norm() > 1e-4) continue;
+            if (i >= kSurfaceSteps) break;
+            i = kSurfaceSteps - 1;
+        }
+        const Matrix6d of_tilts =
+            information_of_tilts(keyframe_.patches, frame_.camera->color, samples(), pose_,
+                                 options_.surface_gate_m, options_.surface_weight);
+        result_.information = without_pretended(result_.information - steadying, of_tilts, guess_);
+        return true;
+    }
+    const PatchMatch& match() const { return match_; }
+    const AlignmentResult& result() const { return result_; }
+
+  private:
+    std::vector<DepthSample> samples() const {
+        return without_shutter(frame_.samples, frame_.readout_s * guess_.velocity_at(pose_));
+    }
+    PatchMatch match_at(double gate_m) const {
+        return match_patches(keyframe_.patches, frame_.camera->color, samples(), pose_, gate_m,
+                             options_.surface_weight);
+    }
+
+    const OdometryOptions& options_;
+    const LocalKeyframe& keyframe_;
+    const PreparedFrame& frame_;
+    const Guess& guess_;
+    Pose pose_;
+    PatchMatch match_;
+    AlignmentResult result_;
+};
+
+/// Information that holds the camera to the guess in directions that the surface hardly holds: there errors
+/// of the keyframe's cells pull every frame alike, and lead it away frame by frame. Nothing where the guess
+/// knows of no motion.
+Matrix6d steadying(const Matrix6d& information, const Guess& guess) {
+    if (guess.velocity_gain.isZero()) return Matrix6d::Zero();
+    constexpr double kMost = 64;  // of what the guess itself says
+    const Twist in_sigmas = guess.information.diagonal().cwiseSqrt();
+    const Twist sigmas = in_sigmas.cwiseInverse();
+    const Matrix6d data = sigmas.asDiagonal() * (information - guess.information) * sigmas.asDiagonal();
+    const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(data);
+    const Twist held = eigen.eigenvalues().cwiseMax(0) / kWeakDirection;
+    const Twist weights = kMost * (1 + held.array().square()).inverse();
+    const Matrix6d half = in_sigmas.asDiagonal() * eigen.eigenvectors();
+    return half * weights.asDiagonal() * half.transpose();
+}
+
+}  // namespace
+
 std::optional<Track> track_surface(const OdometryOptions& options, const LocalKeyframe& keyframe,
                                    const PreparedFrame& frame, const Guess& guess) {
     if (frame.samples.empty() || keyframe.patches.cells() == 0) return std::nullopt;
-    Track track;
-    Pose pose = guess.camera_from_keyframe;
-    PatchMatch match;
-    for (int i = 0; i < 2 * kSurfaceSteps; ++i) {
-        // Wide at first, then as narrow as the noise allows.
-        const double gate = options.surface_gate_m * (i < kSurfaceSteps ? 3 : 1);
-        match = match_patches(keyframe.patches, frame.camera->color,
-                              without_shutter(frame.samples, frame.readout_s * guess.velocity_at(pose)), pose,
-                              gate, options.surface_weight);
-        Alignment alignment = make_alignment(options, frame, guess);
-        alignment.quadratics.insert(alignment.quadratics.end(), match.tiles.begin(), match.tiles.end());
-        alignment.quadratics.push_back(
-            match_planes(keyframe.regions, frame.regions, pose, frame.camera->noise, options.plane_points));
-        track.alignment = align(alignment, pose);
-        if (!track.alignment.converged) return std::nullopt;
-        const Twist step = twist_from_pose(track.alignment.camera_from_keyframe * pose.inverse());
-        pose = track.alignment.camera_from_keyframe;
-        if (step.norm() > 1e-4) continue;
-        if (i >= kSurfaceSteps) break;
-        i = kSurfaceSteps - 1;
-    }
+    SurfaceAlignment surface(options, keyframe, frame, guess);
+    if (!surface.settle(true, Matrix6d::Zero())) return std::nullopt;
+    const Matrix6d held = steadying(surface.result().information, guess);
+    if (!held.isZero() && !surface.settle(false, held)) return std::nullopt;
     const double needed = options.min_surface_share * static_cast<double>(frame.samples.size());
+    const PatchMatch& match = surface.match();
     if (match.matched < needed || match.matched < 0.7 * match.visible) return std::nullopt;
+    Track track;
+    track.alignment = surface.result();
     track.tried = match.visible;
     track.inliers = match.matched;
-    const Matrix6d of_tilts =
-        information_of_tilts(keyframe.patches, frame.camera->color,
-                             without_shutter(frame.samples, frame.readout_s * guess.velocity_at(pose)), pose,
-                             options.surface_gate_m, options.surface_weight);
-    track.alignment.information = without_pretended(track.alignment.information, of_tilts, guess);
     track.degenerate = is_degenerate(track.alignment.information, guess);
     track.guess_information = guess.information;
     return track;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
 #include <cmath>
 #include <limits>
 
@@ -73,6 +74,23 @@ TEST_F(TiesTest, WhereACovarianceIsNotUsableATieIsSoft) {
     EXPECT_TRUE(loop.edge.robust);
     EXPECT_FALSE(loop.is_step || loop.is_known || loop.is_applied);
     EXPECT_EQ(loop.closure, 3);
+}
+
+TEST_F(TiesTest, AStepIsNoLessCertainThanACamerasSpeedLetsItBe) {
+    Matrix6d covariance = 1e-6 * Matrix6d::Identity();
+    covariance(1, 1) = 100;  // nothing was seen of that direction, nor of a turn that goes with it
+    covariance(5, 5) = 25;
+    covariance(1, 5) = covariance(5, 1) = 49;
+    const Matrix6d known = within_reach(covariance, 0.1);
+    EXPECT_NEAR(known(0, 0), 1e-6, 1e-9);
+    EXPECT_NEAR(known(4, 4), 1e-6, 1e-9);
+    EXPECT_LT(known(1, 1) + known(5, 5), 2 * 0.1 * 0.1);
+    EXPECT_GT(known(1, 1) + known(5, 5), 0.5 * 0.1 * 0.1);
+    EXPECT_GT(Eigen::LLT<Matrix6d>(known).matrixL().toDenseMatrix().diagonal().minCoeff(), 0);
+    EXPECT_EQ(within_reach(covariance, 0), covariance);
+    EXPECT_EQ(within_reach(covariance, -5), covariance);
+    const Matrix6d unknown = Matrix6d::Constant(std::numeric_limits<double>::infinity());
+    EXPECT_EQ(within_reach(unknown, 0.1), unknown);
 }
 
 TEST_F(TiesTest, ADetourMakesAStepSofterAndItsDriftLarger) {

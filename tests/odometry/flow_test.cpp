@@ -41,7 +41,7 @@ std::pair<double, double> track(const GrayImage& from, const GrayImage& to) {
         for (int u = 20; u < kWidth - 20; u += 10)
             before.emplace_back(static_cast<float>(u), static_cast<float>(v));
     std::vector<cv::Point2f> after = before;
-    const std::vector<char> found = track_flow(a, b, before, after, 11, 3, 10);
+    const std::vector<char> found = track_flow(a, b, before, after, 11, 3, 10).found;
     double all = 0, right = 0;
     for (std::size_t i = 0; i < found.size(); ++i) {
         all += found[i];
@@ -65,6 +65,23 @@ TEST(FlowTest, FindsItInNoise) {
 TEST(FlowTest, FindsNothingInTheDark) {
     const auto [found, right] = track(blobs(0, 0, 4, 1), blobs(0, 0, 4, 2));
     EXPECT_LT(found, 0.2);
+}
+
+TEST(FlowTest, NoiseLooksAlikeByChanceAndNothingElseDoes) {
+    const auto is_by_chance = [](const GrayImage& from, const GrayImage& to) {
+        const FlowPyramid a = with_derivatives(make_flow_pyramid(from, 3, 11), 11),
+                          b = make_flow_pyramid(to, 3, 11);
+        std::vector<cv::Point2f> before;
+        for (int v = 20; v < kHeight - 20; v += 10)
+            for (int u = 20; u < kWidth - 20; u += 10)
+                before.emplace_back(static_cast<float>(u), static_cast<float>(v));
+        std::vector<cv::Point2f> after = before;
+        return track_flow(a, b, before, after, 11, 3, 10).is_by_chance();
+    };
+    EXPECT_FALSE(is_by_chance(blobs(0, 30, 1, 1), blobs(2, 30, 1, 2)));
+    EXPECT_FALSE(is_by_chance(blobs(0, 30, 8, 1), blobs(2, 15, 8, 2)));  // dimmer, and noisy
+    EXPECT_TRUE(is_by_chance(blobs(0, 0, 4, 1), blobs(0, 0, 4, 2)));
+    EXPECT_TRUE(FlowResult{}.is_by_chance());
 }
 
 TEST(FlowTest, LevelsAreTheSameWithDerivatives) {
