@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
+#include <cmath>
+#include <random>
 
 #include "seen_frame.hpp"
 
@@ -97,6 +99,39 @@ TEST_F(TrackerTest, OneWallLeavesDirectionsToTheGuess) {
     const auto track = track_surface(options_, wall.keyframe(), wall.frame, loose_guess());
     ASSERT_TRUE(track);
     EXPECT_TRUE(track->degenerate);
+}
+
+TEST_F(TrackerTest, WhereABareWallHoldsNothingDepthAloneGoesOnAsItWasGoing) {
+    const auto noisy_wall = [](std::uint64_t seed) {
+        RenderedFrame wall = render_room(room_camera(), Pose::Identity(), false, {{{0, 0, -1}, 2}});
+        std::mt19937_64 random(seed);
+        std::normal_distribution<double> noise(0, 25);  // of 5000 units a metre
+        for (int v = 0; v < wall.depth.height; ++v)
+            for (int u = 0; u < wall.depth.width; ++u)
+                wall.depth(u, v) = static_cast<std::uint16_t>(wall.depth(u, v) + noise(random));
+        return wall;
+    };
+    const auto sideways = [](const Track& track) {
+        const Twist moved = twist_from_pose(track.alignment.camera_from_keyframe);
+        return std::hypot(moved[0], moved[1], moved[5]);
+    };
+    Guess unknown;  // as a prediction is at 30 frames a second
+    unknown.information.diagonal() << 5000, 5000, 5000, 1000, 1000, 1000;
+    Guess known = unknown;
+    known.velocity_gain.setConstant(30);  // at rest, as it was
+    double by_noise = 0, held = 0;
+    for (std::uint64_t seed = 1; seed < 9; seed += 2) {
+        const SeenFrame before(noisy_wall(seed)), after(noisy_wall(seed + 1));
+        const LocalKeyframe keyframe = before.keyframe();
+        const auto led = track_surface(options_, keyframe, after.frame, unknown);
+        const auto kept = track_surface(options_, keyframe, after.frame, known);
+        ASSERT_TRUE(led && kept);
+        EXPECT_TRUE(kept->degenerate);
+        EXPECT_NEAR(kept->alignment.camera_from_keyframe.translation().z(), 0, 1e-3);
+        by_noise += sideways(*led);
+        held += sideways(*kept);
+    }
+    EXPECT_LT(held, 0.2 * by_noise) << held << " " << by_noise;
 }
 
 TEST_F(TrackerTest, TheWholeImageBringsAGuessNearer) {
