@@ -26,6 +26,11 @@ GraphOptions valid(const GraphOptions& options) {
     return options;
 }
 
+/// Of any two times: as integers their difference may have no room.
+double seconds_between(const KeyframeNode& from, const KeyframeNode& to) {
+    return static_cast<double>(to.utime) * 1e-6 - static_cast<double>(from.utime) * 1e-6;
+}
+
 }  // namespace
 
 /// Leads a keyframe through the parts that own the graph's state, one after the other; what it is and where
@@ -132,9 +137,8 @@ int PoseGraph::Impl::same_chain(const Keyframe& keyframe) const {
 /// `step` leads from the node; `detour` is how far it may be off besides.
 void PoseGraph::Impl::append_by_odometry(int from, KeyframeNode node, const Pose& step,
                                          const Matrix6d& covariance, const Drift& detour) {
-    const double passed_s = static_cast<double>(node.utime - keyframes_[from].utime) * 1e-6;
-    topology_.add_odometry(
-        odometry_tie(options_, from, keyframes_.size(), step, within_reach(covariance, passed_s), detour));
+    const Matrix6d within = within_reach(covariance, seconds_between(keyframes_[from], node));
+    topology_.add_odometry(odometry_tie(options_, from, keyframes_.size(), step, within, detour));
     keyframes_.add(std::move(node), orthonormalised(keyframes_.pose(from) * step), from);
 }
 
@@ -154,7 +158,7 @@ void PoseGraph::Impl::append_after_gap(KeyframeNode node) {
     constexpr double kAnyTime_s = 3600;
     const int last = keyframes_.newest();
     const KeyframeNode& before = keyframes_.back();
-    const double passed_s = static_cast<double>(node.utime) * 1e-6 - static_cast<double>(before.utime) * 1e-6;
+    const double passed_s = seconds_between(before, node);
     const double seconds = passed_s > 0 ? std::min(passed_s, kAnyTime_s) : kAnyTime_s;
     topology_.add_gap(gap_tie(options_, last, last + 1,
                               before.odom_from_camera.inverse(Eigen::Isometry) * node.odom_from_camera,

@@ -68,7 +68,8 @@ Matrix6d within_reach(const Matrix6d& covariance, double seconds) {
     if (!covariance.allFinite() || !(seconds > 0)) return covariance;
     const double reach = kSpeed * seconds;
     const Matrix6d sum = covariance + reach * reach * Matrix6d::Identity();
-    const Matrix6d less = covariance - covariance * sum.ldlt().solve(covariance);
+    // Of inverses the sum's inverse; not as a difference, in which what is very wide would count as certain.
+    const Matrix6d less = reach * reach * sum.ldlt().solve(covariance);
     return 0.5 * (less + less.transpose());
 }
 

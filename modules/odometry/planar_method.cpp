@@ -68,10 +68,12 @@ std::optional<Track> PlanarMethod::track_geometry(const PreparedFrame& frame, co
     carried_on.camera_from_keyframe =
         pose_from_twist(elapsed * known.motion.velocity()) * still.camera_from_keyframe;
     std::optional<Track> best;
-    std::vector<Guess> starts{guess, still, carried_on};
     const bool is_motion_known = !guess.velocity_gain.isZero();
-    if (by_image && !is_motion_known) starts[0] = *by_image;
-    if (by_image && is_motion_known) starts.insert(starts.begin() + 1, *by_image);
+    std::vector<Guess> starts;
+    if (is_motion_known || !by_image) starts.push_back(guess);
+    if (by_image) starts.push_back(*by_image);
+    starts.push_back(still);
+    starts.push_back(carried_on);
     for (const Guess& start : starts) {
         std::optional<Track> track = track_surface(options_, keyframe, frame, start);
         if (!track || (!fresh && (track->degenerate || track->inliers < kSureShare * track->tried))) continue;

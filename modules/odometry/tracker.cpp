@@ -59,14 +59,18 @@ bool is_supported(const OdometryOptions& options, const AlignmentResult& result,
            result.inliers >= options.min_inlier_share * static_cast<double>(terms);
 }
 
+/// An information in the guess's sigmas, in which directions are compared.
+Matrix6d in_sigmas_of(const Guess& guess, const Matrix6d& information) {
+    const Twist sigmas = guess.information.diagonal().cwiseSqrt().cwiseInverse();
+    return sigmas.asDiagonal() * information * sigmas.asDiagonal();
+}
+
 /// What is left of the data's information without what noise pretends: less in no direction than the guess
-/// says. Directions are compared in the guess's sigmas.
+/// says.
 Matrix6d without_pretended(const Matrix6d& information, const Matrix6d& pretended, const Guess& guess) {
+    const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(
+        in_sigmas_of(guess, information - guess.information - pretended));
     const Twist in_sigmas = guess.information.diagonal().cwiseSqrt();
-    const Twist sigmas = in_sigmas.cwiseInverse();
-    const Matrix6d data =
-        sigmas.asDiagonal() * (information - guess.information - pretended) * sigmas.asDiagonal();
-    const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(data);
     const Matrix6d half = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
     const Matrix6d scaled = in_sigmas.asDiagonal() * half;
     return guess.information + scaled * scaled.transpose();
@@ -74,9 +78,8 @@ Matrix6d without_pretended(const Matrix6d& information, const Matrix6d& pretende
 
 /// True when the data say too little about some direction compared with the guess.
 bool is_degenerate(const Matrix6d& information, const Guess& guess) {
-    const Twist scale = guess.information.diagonal().cwiseSqrt().cwiseInverse();
-    const Matrix6d data = scale.asDiagonal() * (information - guess.information) * scale.asDiagonal();
-    const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(data, Eigen::EigenvaluesOnly);
+    const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(in_sigmas_of(guess, information - guess.information),
+                                                        Eigen::EigenvaluesOnly);
     return !(eigen.eigenvalues()(0) > kWeakDirection);
 }
 
@@ -345,10 +348,8 @@ class SurfaceAlignment {
 Matrix6d steadying(const Matrix6d& information, const Guess& guess) {
     if (guess.velocity_gain.isZero()) return Matrix6d::Zero();
     constexpr double kMost = 64;  // of what the guess itself says
+    const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(in_sigmas_of(guess, information - guess.information));
     const Twist in_sigmas = guess.information.diagonal().cwiseSqrt();
-    const Twist sigmas = in_sigmas.cwiseInverse();
-    const Matrix6d data = sigmas.asDiagonal() * (information - guess.information) * sigmas.asDiagonal();
-    const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(data);
     const Twist held = eigen.eigenvalues().cwiseMax(0) / kWeakDirection;
     const Twist weights = kMost * (1 + held.array().square()).inverse();
     const Matrix6d half = in_sigmas.asDiagonal() * eigen.eigenvectors();

@@ -385,6 +385,16 @@ TEST_F(GraphTest, WhereTimeGoesBackNothingIsKnownOfTheWay) {
     EXPECT_LT(rms_error(graph.trajectory(), poses), 0.1);
 }
 
+TEST_F(GraphTest, TimesAtBothEndsOfTheirRangeDoNotStopIt) {
+    Walk walk = test::walk(room_, square_loop(3, 5, 1.3), random_);
+    for (Keyframe& keyframe : walk.keyframes)
+        keyframe.utime = keyframe.id % 2 == 0 ? std::numeric_limits<std::int64_t>::min()
+                                              : std::numeric_limits<std::int64_t>::max();
+    PoseGraph graph;
+    for (const Keyframe& keyframe : walk.keyframes) graph.add(keyframe);
+    expect_consistent(graph.trajectory());
+}
+
 /// Largest distance of a kept keyframe to where it truly stood.
 double worst_error(const PoseGraph& graph, const std::vector<Pose>& truth) {
     double worst = 0;

@@ -87,6 +87,8 @@ TEST_F(TiesTest, AStepIsNoLessCertainThanACamerasSpeedLetsItBe) {
     EXPECT_LT(known(1, 1) + known(5, 5), 2 * 0.1 * 0.1);
     EXPECT_GT(known(1, 1) + known(5, 5), 0.5 * 0.1 * 0.1);
     EXPECT_GT(Eigen::LLT<Matrix6d>(known).matrixL().toDenseMatrix().diagonal().minCoeff(), 0);
+    for (const double wide : {1e6, 1e20, 1e100})
+        EXPECT_NEAR(within_reach(wide * Matrix6d::Identity(), 0.1)(2, 2), 0.1 * 0.1, 1e-6) << wide;
     EXPECT_EQ(within_reach(covariance, 0), covariance);
     EXPECT_EQ(within_reach(covariance, -5), covariance);
     const Matrix6d unknown = Matrix6d::Constant(std::numeric_limits<double>::infinity());

@@ -32,16 +32,27 @@ GrayImage blobs(double shift, double contrast, double noise, std::uint64_t seed)
     return image;
 }
 
-/// Share of points found, and of all points those found within a pixel of the true shift of 2.
-std::pair<double, double> track(const GrayImage& from, const GrayImage& to) {
+/// Flow of points all over the image, and where it leads them.
+struct GridFlow {
+    std::vector<cv::Point2f> before, after;
+    FlowResult result;
+};
+GridFlow flow_of_grid(const GrayImage& from, const GrayImage& to) {
     const FlowPyramid a = with_derivatives(make_flow_pyramid(from, 3, 11), 11),
                       b = make_flow_pyramid(to, 3, 11);
-    std::vector<cv::Point2f> before;
+    GridFlow flow;
     for (int v = 20; v < kHeight - 20; v += 10)
         for (int u = 20; u < kWidth - 20; u += 10)
-            before.emplace_back(static_cast<float>(u), static_cast<float>(v));
-    std::vector<cv::Point2f> after = before;
-    const std::vector<char> found = track_flow(a, b, before, after, 11, 3, 10).found;
+            flow.before.emplace_back(static_cast<float>(u), static_cast<float>(v));
+    flow.after = flow.before;
+    flow.result = track_flow(a, b, flow.before, flow.after, 11, 3, 10);
+    return flow;
+}
+
+/// Share of points found, and of all points those found within a pixel of the true shift of 2.
+std::pair<double, double> track(const GrayImage& from, const GrayImage& to) {
+    const auto [before, after, result] = flow_of_grid(from, to);
+    const std::vector<char>& found = result.found;
     double all = 0, right = 0;
     for (std::size_t i = 0; i < found.size(); ++i) {
         all += found[i];
@@ -69,14 +80,7 @@ TEST(FlowTest, FindsNothingInTheDark) {
 
 TEST(FlowTest, NoiseLooksAlikeByChanceAndNothingElseDoes) {
     const auto is_by_chance = [](const GrayImage& from, const GrayImage& to) {
-        const FlowPyramid a = with_derivatives(make_flow_pyramid(from, 3, 11), 11),
-                          b = make_flow_pyramid(to, 3, 11);
-        std::vector<cv::Point2f> before;
-        for (int v = 20; v < kHeight - 20; v += 10)
-            for (int u = 20; u < kWidth - 20; u += 10)
-                before.emplace_back(static_cast<float>(u), static_cast<float>(v));
-        std::vector<cv::Point2f> after = before;
-        return track_flow(a, b, before, after, 11, 3, 10).is_by_chance();
+        return flow_of_grid(from, to).result.is_by_chance();
     };
     EXPECT_FALSE(is_by_chance(blobs(0, 30, 1, 1), blobs(2, 30, 1, 2)));
     EXPECT_FALSE(is_by_chance(blobs(0, 30, 8, 1), blobs(2, 15, 8, 2)));  // dimmer, and noisy
