@@ -20,7 +20,9 @@ void add_closure_options(OptionList& list, GraphOptions& options) {
     list.add("max_closures", options.max_closures, at_least(0),
              "Loop closures that are accepted for one keyframe; 0: none");
     list.add("max_place_drift_m", options.max_place_drift_m, at_least(0),
-             "With more drift between two keyframes, where they are does not make them candidates", kExpert);
+             "Keyframes between which more drift is possible are not tried for a loop closure for their "
+             "places alone",
+             kExpert);
     list.add("matching_ratio", options.matching_ratio, kShare,
              "Largest ratio of the best to the second-best descriptor distance of a match", kExpert);
     list.add("min_inliers", options.min_inliers, at_least(3),

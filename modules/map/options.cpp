@@ -44,12 +44,10 @@ OptionList options_of(MapOptions& options) {
     list.add("min_keyframes", options.min_keyframes, {1, 1e6},
              "Planes that fewer keyframes saw are left out of the map until more do");
     list.add("moved_m", options.moved_m, {0, 10},
-             "A correction that moves no keyframe by more, nor turns one by more than moved-deg, does not "
-             "rebuild the map",
+             "A correction that moves no keyframe by more, and turns none beyond its limit, rebuilds nothing",
              kExpert);
     list.add("moved_deg", options.moved_deg, {0, 180},
-             "A correction that turns no keyframe by more, nor moves one by more than moved-m, does not "
-             "rebuild the map",
+             "A correction that turns no keyframe by more, and moves none beyond its limit, rebuilds nothing",
              kExpert);
     list.add("max_extent_m", options.max_extent_m, {1, 1000}, "A plane does not grow longer than this",
              kExpert);

@@ -265,7 +265,8 @@ class Flags::Impl {
         CLI::Option* const option = std::visit(
             [&](auto* field) {
                 if constexpr (std::is_same_v<decltype(field), bool*>) {
-                    CLI::Option* const added = app.add_flag(dashed(name), *field, described.help);
+                    const std::string on = *field ? " [on; --" + name + "=false turns it off]" : "";
+                    CLI::Option* const added = app.add_flag(dashed(name), *field, described.help + on);
                     finish(added, *field);
                     return added;
                 } else {
@@ -467,6 +468,15 @@ std::vector<FlagValue> Flags::values() const {
     for (const auto& [option, value, heading, expert] : impl_->known)
         values.push_back({impl_->name_of(option), value()});
     return values;
+}
+
+std::vector<OwnFlag> Flags::own() const {
+    std::vector<OwnFlag> own;
+    for (const auto& [option, value, heading, expert] : impl_->known) {
+        if (heading.empty())
+            own.push_back({impl_->name_of(option), config_text({"", value()}), option->get_description()});
+    }
+    return own;
 }
 
 }  // namespace planemap::messages

@@ -22,6 +22,13 @@ struct FlagValue {
     std::variant<std::monostate, bool, double, std::int64_t, std::uint64_t, std::string> value;
 };
 
+/// A flag that a program adds for itself, and not from a list of options.
+struct OwnFlag {
+    std::string name;   ///< long, without dashes; of an argument without a name: what --help calls it
+    std::string value;  ///< now, as in a --config file; empty for none
+    std::string help;
+};
+
 /// A program's command line. Flags write straight into the fields they are given, show their defaults in
 /// --help, and may also come from a file (--config): one `name = value` a line, # begins a comment, text may
 /// stand in quotes. --dump-config prints such a file with all options as they are, and --version the
@@ -69,6 +76,8 @@ class Flags {
 
     /// All options in the order they were added, with their values now.
     std::vector<FlagValue> values() const;
+    /// The flags that come from no list, in the order they were added.
+    std::vector<OwnFlag> own() const;
 
   private:
     class Impl;

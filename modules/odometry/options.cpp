@@ -11,11 +11,13 @@ OptionList options_of(MotionPriorOptions& options) {
         "Channel of bot_core.pose_t on which wheel odometry or an IMU says how the robot's body moves: it "
         "fills the directions that the camera does not see. Needs body_from_camera in camera.json");
     list.add("motion_way_sigma", options.sigma_m_per_m, {0, 10},
-             "Standard deviation of a way that it says, as a share of it", kExpert);
+             "Standard deviation of the motion channel's ways, as a share of the way", kExpert);
     list.add("motion_turn_sigma", options.sigma_rad_per_rad, {0, 10},
-             "Standard deviation of a turn that it says, as a share of it", kExpert);
+             "Standard deviation of the motion channel's turns, as a share of the turn", kExpert);
     list.add("motion_max_age", options.max_age_s, {0.001, 10, "s"},
-             "A frame further after its last pose, or between two, goes without it", kExpert);
+             "A frame that is longer after the motion channel's last pose, or between two of its poses that "
+             "are further apart, goes without a prior",
+             kExpert);
     return list;
 }
 

@@ -9,30 +9,34 @@ OptionList options_of(CellOptions& options) {
     list.add("min_region_fraction", options.min_region_fraction, kShare,
              "Smallest region as a share of the image's pixels");
     list.add("grow_m", options.grow_m, greater_than(0),
-             "Largest mean distance of a cell to its region's plane; or grow-sigmas, if that is more",
+             "Largest mean distance of a cell to its region's plane; or the limit in sigmas of the noise, if "
+             "that is more",
              kExpert);
     list.add("grow_sigmas", options.grow_sigmas, greater_than(0),
              "Largest mean distance of a cell to its region's plane, in sigmas of the depth noise there; or "
-             "grow-m, if that is more",
+             "the limit in metres, if that is more",
              kExpert);
-    list.add("merge_m", options.merge_m, greater_than(0),
-             "By how much (RMS) two regions to be merged may leave their common plane; or merge-sigmas, if "
-             "that is more",
-             kExpert);
+    list.add(
+        "merge_m", options.merge_m, greater_than(0),
+        "By how much (RMS) two regions to be merged may leave their common plane; or the limit in sigmas "
+        "of the noise, if that is more",
+        kExpert);
     list.add(
         "merge_sigmas", options.merge_sigmas, greater_than(0),
         "By how much (RMS) two regions to be merged may leave their common plane, in sigmas of the depth "
-        "noise there; or merge-m, if that is more",
+        "noise there; or the limit in metres, if that is more",
         kExpert);
     list.add("merge_angle_deg", options.merge_angle_deg, between(0, 90),
              "Largest angle between two regions to be merged");
     list.add("bend_deg", options.bend_deg, between(0, 90),
              "A region that turns by more from end to end is curved, and no plane", kExpert);
-    list.add("thickness_m", options.thickness_m, greater_than(0),
-             "Largest distance of a pixel to its region's plane; or thickness-sigmas, if that is more");
+    list.add(
+        "thickness_m", options.thickness_m, greater_than(0),
+        "Largest distance of a pixel to its region's plane; or the limit in sigmas of the noise, if that "
+        "is more");
     list.add("thickness_sigmas", options.thickness_sigmas, greater_than(0),
              "Largest distance of a pixel to its region's plane, in sigmas of the depth noise there; or "
-             "thickness-m, if that is more",
+             "the limit in metres, if that is more",
              kExpert);
     return list;
 }

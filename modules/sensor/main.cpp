@@ -37,13 +37,11 @@ int main(int argc, char** argv) {
     planemap::messages::CameraFlag camera;
     camera.add_to(process.flags(),
                   "camera.json for a log that does not describe its camera, or instead of what INPUT says");
-    process.flags().add("channel", source.channel,
-                        "Of a log: the channel of the frames; default: the first that has depth");
+    process.flags().add("channel", source.channel, planemap::sensor::kChannelHelp);
     process.flags().add("record", source.device.record,
                         ".oni file to record a live OpenNI2 camera to, put in place when it is whole");
     process.flags().add("repeat", source.device.repeat, "Begin an .oni file again at its end");
-    process.flags().add("duration", source.duration_s,
-                        "A live camera ends after so many seconds; 0: with Ctrl-C");
+    process.flags().add("duration", source.duration_s, planemap::sensor::kDurationHelp);
     bool list = false;
     process.flags().add("list", list, "Only list the cameras there are, with their modes; needs no INPUT");
     bool check = false;

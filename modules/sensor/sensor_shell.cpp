@@ -281,10 +281,8 @@ void SensorShell::publish(const SensorFrame& frame) {
 
 OptionList pacing_of(SensorShellOptions& options) {
     OptionList list("Pacing");
-    list.add("rate", options.rate_hz, {0, 1000, "Hz"},
-             "Frames a second, whatever the timestamps say; 0: as recorded");
-    list.add("speed", options.speed, {0, 1000},
-             "Times the recorded speed; 0: as fast as the frames are taken");
+    list.add("rate", options.rate_hz, {0, 1000, "Hz"}, kRateHelp);
+    list.add("speed", options.speed, {0, 1000}, kSpeedHelp);
     list.add("restamp", options.restamp,
              "Stamp frames with the time at which they are due instead of their own: a recording as if it "
              "were live");

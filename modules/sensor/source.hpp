@@ -17,6 +17,13 @@ inline constexpr const char* kInputs =
     "openni2[:URI or SERIAL] or freenect for a camera, FILE.oni, an LCM log, a TUM-layout folder (rgb.txt, "
     "depth.txt, camera.json), or sim:WORLD[?KEY=VALUE&...]";
 
+/// Of flags that several programs have, as --help tells them.
+inline constexpr const char* kChannelHelp =
+    "Of a log: the channel of the frames; default: the first that has depth";
+inline constexpr const char* kDurationHelp = "A live camera ends after so many seconds; 0: with Ctrl-C";
+inline constexpr const char* kRateHelp = "Frames a second, whatever the timestamps say; 0: as recorded";
+inline constexpr const char* kSpeedHelp = "Times the recorded speed; 0: as fast as the frames are taken";
+
 /// How an input is read.
 struct SourceOptions {
     double max_color_gap_s = 0.02;       ///< depth without a colour image this near in time has no colour

@@ -7,8 +7,7 @@ int main(int argc, char** argv) {
                                         "for Director and libbot's viewers.");
     planemap::viewer::ViewerOptions options;
     bool no_previews = false, no_collections = false;
-    process.flags().add("rate-hz", options.rate_hz, "Of pictures and collections, at most (0.1 to 30)");
-    process.flags().add("preview-px", options.preview_px, "Longer side of a picture, at most (40 to 640)");
+    process.flags().add(options_of(options));
     process.flags().add("no-previews", no_previews, "No PLANEMAP_PREVIEW_COLOR, _DEPTH and _REGIONS");
     process.flags().add("no-collections", no_collections, "No OBJECT_COLLECTION and POINTS_COLLECTION");
     return process.run(argc, argv, [&](planemap::messages::Bus& bus) {

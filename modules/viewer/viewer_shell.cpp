@@ -2,7 +2,6 @@
 #include "viewer/viewer_shell.hpp"
 
 #include "core/components.hpp"
-#include "core/validation.hpp"
 #include "messages/channels.hpp"
 #include "messages/decode.hpp"
 #include "messages/image_codec.hpp"
@@ -13,17 +12,17 @@ namespace planemap::viewer {
 
 namespace channels = messages::channels;
 
-void ViewerOptions::validate() const {
-    FieldErrors errors("viewer");
-    errors.require(rate_hz >= 0.1 && rate_hz <= 30, "rate_hz", rate_hz, "0.1 to 30");
-    errors.require(preview_px >= 40 && preview_px <= 640, "preview_px", preview_px, "40 to 640");
-    errors.throw_if_any();
+OptionList options_of(ViewerOptions& options) {
+    OptionList list("Viewer");
+    list.add("rate_hz", options.rate_hz, {0.1, 30}, "Of pictures and collections, at most");
+    list.add("preview_px", options.preview_px, {40, 640}, "Longer side of a picture, at most");
+    return list;
 }
 
 ViewerShell::ViewerShell(messages::Bus& bus, std::shared_ptr<messages::FrameDecoder> decoder,
                          const ViewerOptions& options)
     : bus_(bus), options_(options), decoder_(std::move(decoder)) {
-    options_.validate();
+    check_options("viewer", options_);
     if (options_.previews) {
         decoder_->subscribe(status_, 2, [this](auto frame) { on_frame(std::move(frame)); });
         bus_.subscribe(channels::kRegions, status_.guard([this](const auto& m) { on_regions(m); }), 2);

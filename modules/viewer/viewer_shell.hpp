@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "core/option_list.hpp"
 #include "core/plane_map.hpp"
 #include "messages/convert.hpp"
 #include "messages/frame_decoder.hpp"
@@ -11,14 +12,13 @@
 namespace planemap::viewer {
 
 struct ViewerOptions {
-    double rate_hz = 2;       ///< of previews and collections, at most; 0.1 to 30
-    int preview_px = 320;     ///< longer side of a preview, at most; 40 to 640
+    double rate_hz = 2;
+    int preview_px = 320;
     bool previews = true;     ///< for lcm-spy
     bool collections = true;  ///< for Director and libbot's viewers
-
-    /// Throws std::invalid_argument that names every bad field.
-    void validate() const;
 };
+
+OptionList options_of(ViewerOptions& options);
 
 /// What people look at, made of what is on the bus anyhow, so that nothing is slowed when nobody looks:
 /// - previews of colour, depth and regions as JPEG of less than kMostBytes: what lcm-spy's receiver takes;

@@ -75,8 +75,7 @@ int main(int argc, char** argv) {
     options.camera.add_to(flags, "camera.json to start from, instead of what INPUT says of its camera");
     flags.add("frames", options.frames,
               "A:B: only frames A to B-1 of the input, counted from 0; either may be left out");
-    flags.add("channel", calibration.source.channel,
-              "Of a log: the channel of the frames; default: the first that has depth");
+    flags.add("channel", calibration.source.channel, sensor::kChannelHelp);
     flags.add("passes", calibration.passes,
               "Times that the recording is mapped, each with what the one before learnt: 1 to 20");
     flags.add("q,quiet", calibration.quiet, "No progress lines");

@@ -38,7 +38,7 @@ void add_flags(messages::Flags& flags, Arguments& arguments) {
     flags.add(
         "cloud", options.recording,
         std::string("Recording that the map is of, for cloud-ply and cloud-pcd, its readings coloured by the "
-                    "planes that explain them: LCM log, ") +
+                    "planes that explain them: ") +
             sensor::kInputs);
     arguments.camera.add_to(
         flags, "camera.json for a recording that does not describe its camera, or instead of what it says");

@@ -116,16 +116,16 @@ void LaunchOptions::add_to(messages::Flags& all) {
     all.add_positional("input", input,
                        std::string("What planemap-sensor takes (default: sim:office): ") + sensor::kInputs,
                        false);
-    all.add("rate", rate, "Frames a second, whatever the timestamps say");
-    all.add("speed", speed, "Times the recorded speed");
-    all.add("channel", channel, "Of a log: the channel of the frames; default: the first that has depth");
+    all.add("rate", rate, sensor::kRateHelp);
+    all.add("speed", speed, sensor::kSpeedHelp);
+    all.add("channel", channel, sensor::kChannelHelp);
     all.add("camera", camera,
             "camera.json for a log that does not describe its camera, or instead of what INPUT says; with "
             "--no-sensor for "
             "frames on the bus that nobody describes");
     all.add("record", record, ".oni file to record a live OpenNI2 camera to");
     all.add("repeat", repeat, "Begin an .oni file again at its end");
-    all.add("duration", duration, "A live camera ends after so many seconds; default: with Ctrl-C");
+    all.add("duration", duration, sensor::kDurationHelp);
     all.add("no-sensor", no_sensor, "Only the modules, e.g. to replay a log into them with lcm-logplayer");
     all.add("no-octomap", no_octomap, "Without the OctoMap, which is there for comparison");
     all.add("log", log,

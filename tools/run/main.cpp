@@ -2,14 +2,10 @@
 // planemap-run: a recording to a plane map, all modules in one process.
 #include <spdlog/spdlog.h>
 
-#include <algorithm>
 #include <cstdio>
-#include <opencv2/core/utility.hpp>
-#include <thread>
 
 #include "core/standard_output.hpp"
 #include "core/trajectory_file.hpp"
-#include "messages/camera_flag.hpp"
 #include "pipeline/pipeline.hpp"
 #include "pipeline/preparation.hpp"
 #include "run/depth_watch.hpp"
@@ -20,87 +16,11 @@
 #include "run/progress.hpp"
 #include "run/report.hpp"
 #include "run/run_info.hpp"
+#include "run/run_options.hpp"
 #include "run/size_rows.hpp"
 
 namespace planemap {
 namespace {
-
-struct RunOptions {
-    std::string input, frames, size_resolutions = "0.1,0.05,0.02";
-    std::filesystem::path output, poses;
-    messages::CameraFlag camera;
-    sensor::SourceOptions source;
-    bool no_octomap = false, quiet = false, verbose = false;
-    std::optional<std::uint64_t> seed;
-    int threads = 0;
-    pipeline::PipelineOptions pipeline;
-};
-
-OptionList thread_options(RunOptions& options) {
-    OptionList list("Threads");
-    list.add(
-        "threads", options.threads, {0, 64},
-        "Threads of the whole run; they do not change the result. All but the first read, decode and "
-        "segment the next frames ahead. 1 leaves the other cores alone; 0: 2, or 1 where there is one core, "
-        "which suits a robot of two weak ones");
-    return list;
-}
-
-/// The number of threads that --threads asks for: it holds for the libraries, too.
-int rule_threads(RunOptions& options) {
-    const int threads =
-        options.threads > 0 ? options.threads : std::clamp<int>(std::thread::hardware_concurrency(), 1, 2);
-    int& rebuild = options.pipeline.map.map.threads;
-    rebuild = std::min(rebuild, threads);
-    cv::setNumThreads(1);  // frames side by side give more than pieces of one
-    return threads;
-}
-
-OptionList report_options(RunOptions& options) {
-    OptionList list("Report");
-    list.add(
-        "size_resolutions", options.size_resolutions, {},
-        "Resolutions, metres with commas between, that the report tells the OctoMap's sizes at besides "
-        "its own; each takes a pass over the keyframes' depth, 0.01 a long one. One whose tree would take "
-        "more than 512 MB is left out, which the report says",
-        Audience::kExpert);
-    return list;
-}
-
-void add_run_flags(messages::Flags& flags, RunOptions& options) {
-    flags.add_positional("input", options.input, std::string("LCM log, ") + sensor::kInputs);
-    flags.add("o,output", options.output, "Folder for the results; made if it is not there");
-    flags.required();
-    flags.add("frames", options.frames,
-              "A:B: only frames A to B-1 of the input, counted from 0; either may be left out");
-    options.camera.add_to(
-        flags, "camera.json for a log that does not describe its camera, or instead of what INPUT says");
-    flags.add("channel", options.source.channel,
-              "Of a log: the channel of the frames; default: the first that has depth");
-    flags.add("duration", options.source.duration_s,
-              "A live camera ends after so many seconds; 0: with Ctrl-C");
-    flags.add("poses", options.poses,
-              "Trajectory (TUM or EuRoC format, of the colour camera) that keyframes take their poses from, "
-              "instead of the "
-              "graph's; e.g. groundtruth.txt");
-    flags.add("map", options.pipeline.map.start,
-              "plane_map.lcmlog to start from: its planes keep their ids and grow on. It must be in the "
-              "world frame "
-              "of this run: with --poses theirs, else the first camera's");
-    flags.add("seed", options.seed, "Of everything random; the same seed gives the same bytes out");
-    flags.add("no-octomap", options.no_octomap, "Do not build the OctoMap to compare with");
-    flags.add("q,quiet", options.quiet, "No progress lines");
-    flags.add("v,verbose", options.verbose, "Log more");
-    flags.add(thread_options(options));
-    flags.add(report_options(options));
-    flags.add(camera::options_of(options.source.device.options), "camera-");
-    flags.add(options_of(options.pipeline.segmentation), "segmentation-");
-    flags.add(options_of(options.pipeline.odometry), "odometry-");
-    flags.add(options_of(options.pipeline.odometry.motion));
-    flags.add(options_of(options.pipeline.graph), "graph-");
-    flags.add(options_of(options.pipeline.map.map), "map-");
-    flags.add(options_of(options.pipeline.octomap), "octomap-");
-}
 
 /// Feeds the input to its end, or until a signal asks to stop. Returns the error that ended it early, if one
 /// did: what was mapped until then is not lost.
