@@ -232,7 +232,7 @@ std::vector<Earlier> earlier(const T*) {
     return {};
 }
 std::vector<Earlier> earlier(const camera_info_t*) {
-    constexpr std::size_t kNoLenses = 2 * (1 + 4);
+    constexpr std::size_t kNoLenses = std::size_t{2} * (1 + 4);
     std::vector<std::uint8_t> unknown = zeros(8 + 1 + kTransform + kNoLenses);
     constexpr std::size_t kW = 8 + 1 + 3 * 8;  // of the identity's quaternion, 1.0
     unknown[kW] = 0x3f;

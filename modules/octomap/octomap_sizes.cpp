@@ -179,8 +179,9 @@ std::vector<Eigen::Vector3d> occupied_voxels_of(const ::octomap::OcTree& tree) {
         const int n = 1 << (tree.getTreeDepth() - leaf.getDepth());
         const Eigen::Vector3d centre(leaf.getX(), leaf.getY(), leaf.getZ());
         const Eigen::Vector3d first = centre - Eigen::Vector3d::Constant(0.5 * edge * (n - 1));
-        for (int i = 0; i < n * n * n; ++i)
-            centres.push_back(first + edge * Eigen::Vector3d(i % n, i / n % n, i / (n * n)));
+        for (int z = 0; z < n; ++z)
+            for (int y = 0; y < n; ++y)
+                for (int x = 0; x < n; ++x) centres.push_back(first + edge * Eigen::Vector3d(x, y, z));
     }
     return centres;
 }
