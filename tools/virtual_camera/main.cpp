@@ -84,7 +84,9 @@ int main(int argc, char** argv) {
         "Runs COMMAND with a virtual OpenNI2 camera that streams INPUT, and faults on order; of "
         "other cameras it sees none.\n"
         "Example: planemap-virtual-camera sim:office -- planemap-sensor openni2");
-    flags.add_positional("input", order.input, "What the camera sees: a TUM-layout folder, or sim:WORLD");
+    flags.add_positional(
+        "input", order.input,
+        "What the camera sees: an INPUT of planemap-run, e.g. a TUM-layout folder, an LCM log or sim:WORLD");
     flags.add(virtual_camera::options_of(order.options));
     char** const dashes =
         std::find_if(argv, argv + argc, [](const char* a) { return std::strcmp(a, "--") == 0; });
