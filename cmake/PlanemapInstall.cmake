@@ -1,17 +1,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # What `cmake --install` puts where, the CMake package for other projects, and the Debian packages.
-# Components: runtime (programs, spy, units for systemd and procman, the types' jar), dev (libraries, headers, .lcm files, the CMake package),
+# Components: runtime (programs, spy, units for systemd and procman, the jars, the documents), dev (libraries, headers, .lcm files, the CMake package),
 # benchmarks (planemap-bench-*; in no Debian package).
 include(CMakePackageConfigHelpers)
 
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/modules/ COMPONENT dev DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/planemap
     FILES_MATCHING PATTERN "*.hpp")
-foreach(script spy)
-    install(PROGRAMS ${CMAKE_SOURCE_DIR}/tools/${script} COMPONENT runtime DESTINATION ${CMAKE_INSTALL_BINDIR}
-        RENAME planemap-${script})
-endforeach()
+install(PROGRAMS ${CMAKE_SOURCE_DIR}/tools/spy COMPONENT runtime DESTINATION ${CMAKE_INSTALL_BINDIR} RENAME planemap-spy)
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/tools/systemd ${CMAKE_SOURCE_DIR}/tools/procman COMPONENT runtime
     DESTINATION ${CMAKE_INSTALL_DATADIR}/planemap)
+# README.md's links to docs/ hold there, too.
+install(FILES ${CMAKE_SOURCE_DIR}/README.md ${CMAKE_SOURCE_DIR}/CHANGELOG.md ${CMAKE_SOURCE_DIR}/LICENSE COMPONENT runtime
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/planemap)
+install(DIRECTORY ${CMAKE_SOURCE_DIR}/docs COMPONENT runtime DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/planemap)
 install(FILES ${CMAKE_SOURCE_DIR}/LICENSE COMPONENT runtime DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/planemap RENAME copyright)
 install(FILES ${CMAKE_SOURCE_DIR}/LICENSE COMPONENT dev DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/planemap-dev RENAME copyright)
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/examples COMPONENT dev DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/planemap-dev)

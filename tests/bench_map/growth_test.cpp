@@ -33,14 +33,6 @@ TEST(Growth, SaysNothingOfWhatWasNotSeen) {
     EXPECT_TRUE(to_json("sim:x", growth)["cost_ratio"].is_null());
 }
 
-TEST(Growth, NeedsAWalkThatGoesRound) {
-    EXPECT_THROW(frames_a_round("sim:office?visits=5"), std::invalid_argument);
-    EXPECT_THROW(frames_a_round("redkitchen"), std::invalid_argument);
-    const auto slow = frames_a_round("sim:office?width=64&height=48");
-    EXPECT_GT(slow, 300);
-    EXPECT_LT(frames_a_round("sim:office?width=64&height=48&speed=1&turn=90"), slow);
-}
-
 TEST(Growth, NotesTheEnd) {
     const Growth growth =
         measure_growth("sim:office?width=160&height=120&frames=12", 10, {}, [](std::int64_t) {});

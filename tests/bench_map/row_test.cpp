@@ -4,8 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "benchmark/rows.hpp"
 #include "evaluate/room.hpp"
+#include "results/rows.hpp"
 
 namespace planemap::bench_map {
 namespace {
@@ -57,16 +57,16 @@ TEST(Row, JsonHasItsKeys) {
 TEST(Row, WhatIsNotKnownIsNull) {
     const Row row{"redkitchen", "estimated", {}, std::nullopt, {}};
     const auto json = to_json(row);
-    benchmark::expect_null(json, {"planes_true", "found", "split", "spurious", "distance_error_mean_m",
-                                  "distance_error_mean_percent", "angle_error_mean_deg", "outline_iou",
-                                  "leaves_explained", "area_supported", "surface_angle_worst_deg"});
+    results::expect_null(json, {"planes_true", "found", "split", "spurious", "distance_error_mean_m",
+                                "distance_error_mean_percent", "angle_error_mean_deg", "outline_iou",
+                                "leaves_explained", "area_supported", "surface_angle_worst_deg"});
     EXPECT_EQ(details(row, true), "");
     EXPECT_EQ(goals({json}), "");
 }
 
 TEST(Row, ColumnsStandUnderTheirHeading) {
-    benchmark::expect_aligned(table(), {to_json(row_of(map_of(room()))),
-                                        to_json({"redkitchen", "estimated", {}, std::nullopt, {}})});
+    results::expect_aligned(table(), {to_json(row_of(map_of(room()))),
+                                      to_json({"redkitchen", "estimated", {}, std::nullopt, {}})});
 }
 
 TEST(Row, DetailsNameWhatToLookAt) {

@@ -4,11 +4,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "bench_odometry/walks.hpp"
+#include "evaluate/walks.hpp"
 
 namespace planemap::bench_odometry {
 namespace {
 
+using test::circle;
+using test::moved;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;

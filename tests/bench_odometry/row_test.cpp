@@ -3,11 +3,13 @@
 
 #include <gtest/gtest.h>
 
-#include "bench_odometry/walks.hpp"
-#include "benchmark/rows.hpp"
+#include "evaluate/walks.hpp"
+#include "results/rows.hpp"
 
 namespace planemap::bench_odometry {
 namespace {
+
+using test::circle;
 
 /// A run with a perfect trajectory but for its size, ten frames lost, and one closure each, true and false.
 MethodRun run_of(const Trajectory& truth, double size) {
@@ -57,24 +59,24 @@ TEST(Row, HoldsErrorsAgainstTheirCovariance) {
     EXPECT_EQ(to_json(make_row("a", "b", truth, run))["nees_share"], 0.75);
     run.relatives[3].utime += 1000000000;  // no truth there
     EXPECT_EQ(to_json(make_row("a", "b", truth, run))["nees_share"], 1);
-    benchmark::expect_null(to_json(make_row("a", "b", std::nullopt, run)), {"nees_share"});
-    benchmark::expect_null(to_json(make_row("a", "b", truth, run_of(truth, 1))), {"nees_share"});
+    results::expect_null(to_json(make_row("a", "b", std::nullopt, run)), {"nees_share"});
+    results::expect_null(to_json(make_row("a", "b", truth, run_of(truth, 1))), {"nees_share"});
 }
 
 TEST(Row, WhatIsNotKnownIsNull) {
     const Trajectory truth = circle(1);
     const Json without = to_json(make_row("a", "b", std::nullopt, run_of(truth, 1)));
-    benchmark::expect_null(without,
-                           {"ate_m", "scale", "rpe_frame_m", "rpe_1s_deg", "loops_true", "loops_false"});
+    results::expect_null(without,
+                         {"ate_m", "scale", "rpe_frame_m", "rpe_1s_deg", "loops_true", "loops_false"});
     EXPECT_EQ(without["loops_unjudged"], 2);
-    benchmark::expect_null(to_json(make_row("a", "b", truth, {})), {"ate_m", "rpe_frame_m", "median_ms"});
+    results::expect_null(to_json(make_row("a", "b", truth, {})), {"ate_m", "rpe_frame_m", "median_ms"});
 }
 
 TEST(Row, LinesOfTheTableAreAligned) {
     const Trajectory truth = circle(1);
-    benchmark::expect_aligned(table(), {to_json(make_row("a", "opencv-rgbdicp", truth, run_of(truth, 1.02))),
-                                        to_json(make_row("a", "paper", std::nullopt, run_of(truth, 1))),
-                                        to_json(make_row("a", "default-no-graph", truth, {}))});
+    results::expect_aligned(table(), {to_json(make_row("a", "opencv-rgbdicp", truth, run_of(truth, 1.02))),
+                                      to_json(make_row("a", "paper", std::nullopt, run_of(truth, 1))),
+                                      to_json(make_row("a", "default-no-graph", truth, {}))});
 }
 
 }  // namespace

@@ -5,10 +5,12 @@
 
 #include <nlohmann/json.hpp>
 
-#include "bench_odometry/walks.hpp"
+#include "evaluate/walks.hpp"
 
 namespace planemap::bench_odometry {
 namespace {
+
+using test::circle;
 
 TEST(Run, ComesThroughJsonExactly) {
     MethodRun run;

@@ -7,7 +7,7 @@ namespace planemap::bench_odometry {
 namespace {
 
 TEST(Table2, IsMeanAndDeviationOfTheRunsRmse) {
-    RevisitErrors a, b;
+    evaluation::RevisitErrors a, b;
     a.revisits = 9;
     a.metres.rmse = 0.004;
     a.step_metres.rmse = 0.01;

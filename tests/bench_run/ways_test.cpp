@@ -4,13 +4,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "benchmark/rows.hpp"
+#include "results/rows.hpp"
 #include "temporary_folder.hpp"
 
 namespace planemap::bench_run {
 namespace {
 
-using benchmark::Json;
+using results::Json;
 
 TEST(Ways, ARowOfEachAndOfThePeers) {
     const test::TemporaryFolder scratch;
@@ -31,8 +31,8 @@ TEST(Ways, ARowOfEachAndOfThePeers) {
         EXPECT_GT(rows[i]["frames_per_s"].get<double>(), 0);
         EXPECT_GT(rows[i]["report_cpu_s"].get<double>(), 0);
     }
-    for (std::size_t i = 2; i < 4; ++i) benchmark::expect_null(rows[i], {"frames_per_s", "report_cpu_s"});
-    benchmark::expect_aligned(table(), rows);
+    for (std::size_t i = 2; i < 4; ++i) results::expect_null(rows[i], {"frames_per_s", "report_cpu_s"});
+    results::expect_aligned(table(), rows);
 }
 
 TEST(Ways, WhatIsMissingIsNamed) {

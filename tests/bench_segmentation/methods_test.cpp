@@ -6,6 +6,7 @@
 
 #include "bench_segmentation/metrics.hpp"
 #include "bench_segmentation/two_walls.hpp"
+#include "benchmark/decimation.hpp"
 #include "temporary_folder.hpp"
 
 namespace planemap::bench {
@@ -25,44 +26,12 @@ TEST(ParseMethods, NamesAndSubsamplings) {
     EXPECT_THAT(test::error_of([] { parse_methods(""); }), HasSubstr("none"));
 }
 
-TEST(Decimated, CameraSeesTheSamePointsInTheSamePlaces) {
-    const CameraInfo camera = scene::camera(645, 481);
-    const DepthImage depth = scene::render(camera, {scene::plane(kWall1)});
-    for (const int step : {1, 2, 3, 4}) {
-        const DepthImage small = decimated(depth, step);
-        const CameraInfo small_camera = decimated(camera, step);
-        EXPECT_NO_THROW(segmentation::check_input(small, small_camera));
-        EXPECT_EQ(small.width, (645 + step - 1) / step);
-        for (int v = 0; v < small.height; v += 11) {
-            for (int u = 0; u < small.width; u += 11) {
-                ASSERT_EQ(small(u, v), depth(u * step, v * step));
-                const double z = camera.metres(small(u, v));
-                EXPECT_LT(
-                    (small_camera.depth.unproject(u, v, z) - camera.depth.unproject(u * step, v * step, z))
-                        .norm(),
-                    1e-12);
-            }
-        }
-    }
-}
-
-TEST(Decimated, TwoCamerasCanStillBeRegistered) {
-    CameraInfo camera = scene::camera();
-    camera.registered = false;
-    camera.color.fx = camera.color.fy = 1.2 * camera.depth.fx;
-    for (const int step : {2, 4, 8}) {
-        const DepthImage small((camera.depth.width + step - 1) / step,
-                               (camera.depth.height + step - 1) / step);
-        EXPECT_NO_THROW(segmentation::check_input(small, decimated(camera, step))) << step;
-    }
-}
-
 TEST(SpreadLabels, EachPixelTakesItsNearestSamplesLabelIfItLiesOnThePlane) {
     TwoWalls walls;
     walls.depth(101, 101) = 500;  // far before the wall
     walls.depth(102, 101) = 0;
-    const auto spread_out =
-        spread(decimated(walls.perfect.labels, 4), walls.perfect.regions, walls.depth, walls.camera, 4);
+    const auto spread_out = spread(benchmark::decimated(walls.perfect.labels, 4), walls.perfect.regions,
+                                   walls.depth, walls.camera, 4);
     int different = 0;
     for (std::size_t i = 0; i < spread_out.pixels.size(); ++i)
         different += spread_out.pixels[i] != walls.perfect.labels.pixels[i];

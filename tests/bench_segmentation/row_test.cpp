@@ -6,7 +6,7 @@
 
 #include "bench_segmentation/local_normals.hpp"
 #include "bench_segmentation/two_walls.hpp"
-#include "benchmark/rows.hpp"
+#include "results/rows.hpp"
 
 namespace planemap::bench {
 namespace {
@@ -45,15 +45,15 @@ TEST(Row, JsonHasTheAgreedKeysAndFigures) {
 
 TEST(Row, WithoutTruthOrPosesTheFiguresAreNull) {
     const Json json = to_json(row_of(false, false));
-    benchmark::expect_null(json, {"recall", "precision", "angle_median_deg", "distance_median_m", "correct",
-                                  "spread_angle_deg", "spread_distance_m"});
+    results::expect_null(json, {"recall", "precision", "angle_median_deg", "distance_median_m", "correct",
+                                "spread_angle_deg", "spread_distance_m"});
     EXPECT_EQ(json["explained"], 1.0);
     EXPECT_TRUE(to_json(Row{}).at("median_ms").is_null());
 }
 
 TEST(Row, LinesOfTheTableAreAligned) {
-    benchmark::expect_aligned(table(), {to_json(row_of(true, true)), to_json(row_of(false, true)),
-                                        to_json(row_of(false, false)), to_json(Row{})});
+    results::expect_aligned(table(), {to_json(row_of(true, true)), to_json(row_of(false, true)),
+                                      to_json(row_of(false, false)), to_json(Row{})});
 }
 
 }  // namespace

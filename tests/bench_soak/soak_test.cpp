@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "benchmark/rows.hpp"
+#include "results/rows.hpp"
 #include "simulate/recording.hpp"
 #include "simulator/simulated_source.hpp"
 #include "temporary_folder.hpp"
@@ -22,6 +22,14 @@ TEST(Soak, GrowthIsFromTheFirstHalfHourToTheEnd) {
     EXPECT_NEAR(*growth({at(900, 50), at(1800, 60)}, 2), 0.2, 1e-9) << "900 frames two seconds apart";
 }
 
+TEST(Soak, AWalkIsARow) {
+    const Json row = to_json("sim:x", {at(900, 50), at(1800, 60), at(3600, 66)}, 1);
+    EXPECT_EQ(row["sequence"], "sim:x");
+    EXPECT_EQ(row["points"].size(), 3u);
+    EXPECT_NEAR(row["memory_growth"], 0.1, 1e-9);
+    EXPECT_TRUE(to_json("sim:x", {at(900, 50)}, 1)["memory_growth"].is_null());
+}
+
 TEST(Soak, ARoundGoesOnAndOn) {
     const test::TemporaryFolder folder;
     const std::string name = "sim:office?frames=40&width=160&height=120";
@@ -36,8 +44,12 @@ TEST(Soak, ARoundGoesOnAndOn) {
     options.every = 40;
     options.pipeline.with_octomap = false;
     int seen = 0;
-    const auto points = soak(round, options, [&](const Json&) { return ++seen > 0; });
+    std::int64_t frames_seen = 0;
+    const auto points = soak(
+        round, options, [&](std::int64_t frames) { frames_seen = frames; },
+        [&](const Json&) { return ++seen > 0; });
     ASSERT_EQ(points.size(), 3u);
+    EXPECT_EQ(frames_seen, 100);
     EXPECT_EQ(points[0]["frames"], 40);
     EXPECT_EQ(points[2]["frames"], 100);
     EXPECT_LT(points[2]["lost"], 50)
@@ -47,10 +59,11 @@ TEST(Soak, ARoundGoesOnAndOn) {
     EXPECT_GT(points[2]["rss_mb"], 1);
     EXPECT_GT(points[2]["graph_mb"], 0);
     EXPECT_LT(points[2]["off_m"], 0.3);
-    benchmark::expect_aligned(table(), points);
-    EXPECT_EQ(soak(round, options, [](const Json&) { return false; }).size(), 1u);
+    results::expect_aligned(table(), points);
+    const auto nothing = [](std::int64_t) {};
+    EXPECT_EQ(soak(round, options, nothing, [](const Json&) { return false; }).size(), 1u);
     options.every = 0;
-    EXPECT_THROW(soak(round, options, [](const Json&) { return true; }), std::invalid_argument);
+    EXPECT_THROW(soak(round, options, nothing, [](const Json&) { return true; }), std::invalid_argument);
 }
 
 }  // namespace

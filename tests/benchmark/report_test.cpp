@@ -54,5 +54,17 @@ TEST(Report, WithoutRowsTheFileHoldsAnEmptyList) {
     EXPECT_EQ(read_file(options.json), "[]\n");
 }
 
+TEST(RunReport, WritesWhatWasMeasuredAndRefusesWrongOptionsBefore) {
+    const TemporaryFolder folder;
+    Options options;
+    options.json = folder.path() / "rows.json";
+    testing::internal::CaptureStdout();
+    run_report(options, "none", [](Report& report) { report.add({{"sequence", "a"}}); });
+    testing::internal::GetCapturedStdout();
+    EXPECT_EQ(Json::parse(read_file(options.json)), Json::parse(R"([{"sequence": "a"}])"));
+    options.frames = -1;
+    EXPECT_THROW(run_report(options, "none", [](Report&) { FAIL(); }), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace planemap::benchmark

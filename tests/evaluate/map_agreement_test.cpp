@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace planemap {
+namespace planemap::test {
 namespace {
 
 /// A rectangle at `centre`, its normal turned from z by `tilt` about x.
@@ -25,42 +25,38 @@ TEST(MapAgreement, AMapAgreesWithItselfWhateverItsIds) {
                 rectangle(3, {5, 0, 0}, 1, 0.5)};
     b.planes = {rectangle(7, {5, 0, 0}, 1, 0.5), rectangle(8, {0, 0, 0}, 2, 1),
                 rectangle(9, {0, 0, 1}, 1, 1)};
-    const auto pairs = pair_planes(a, b);
-    ASSERT_EQ(pairs.size(), 3u);
     const int partners[] = {8, 9, 7};
     for (std::size_t i = 0; i < 3; ++i) {
-        EXPECT_EQ(pairs[i].id_b, partners[i]);
-        EXPECT_GT(pairs[i].iou, 0.99);
-        EXPECT_TRUE(pairs[i].agrees({}));
+        const Agreement agreement = best_agreement(a.planes[i], b);
+        EXPECT_EQ(agreement.id_b, partners[i]);
+        EXPECT_GT(agreement.iou, 0.99);
+        EXPECT_TRUE(agreement.is_within({}));
     }
 }
 
 TEST(MapAgreement, MeasuresWhatDiffers) {
-    PlaneMap a, b;
-    a.planes = {rectangle(1, {0, 0, 0}, 2, 1)};
-    b.planes = {rectangle(1, {0, 0, 0.02}, 2, 1)};
-    EXPECT_NEAR(pair_planes(a, b)[0].distance_m, 0.02, 1e-4);
-    EXPECT_FALSE(pair_planes(a, b)[0].agrees({}));
-    b.planes = {rectangle(1, {0, 0, 0}, 2, 1, 0.02)};
-    EXPECT_NEAR(pair_planes(a, b)[0].angle_deg, 1.146, 0.01);
-    EXPECT_FALSE(pair_planes(a, b)[0].agrees({}));
-    b.planes = {rectangle(1, {0, 0.5, 0}, 2, 1)};  // 1.5 m of 2.5 m in common
-    EXPECT_NEAR(pair_planes(a, b)[0].iou, 0.6, 0.01);
-    EXPECT_FALSE(pair_planes(a, b)[0].agrees({}));
+    const MapPlane plane = rectangle(1, {0, 0, 0}, 2, 1);
+    PlaneMap other;
+    other.planes = {rectangle(1, {0, 0, 0.02}, 2, 1)};
+    EXPECT_NEAR(best_agreement(plane, other).distance_m, 0.02, 1e-4);
+    EXPECT_FALSE(best_agreement(plane, other).is_within({}));
+    other.planes = {rectangle(1, {0, 0, 0}, 2, 1, 0.02)};
+    EXPECT_NEAR(best_agreement(plane, other).angle_deg, 1.146, 0.01);
+    EXPECT_FALSE(best_agreement(plane, other).is_within({}));
+    other.planes = {rectangle(1, {0, 0.5, 0}, 2, 1)};  // 1.5 m of 2.5 m in common
+    EXPECT_NEAR(best_agreement(plane, other).iou, 0.6, 0.01);
+    EXPECT_FALSE(best_agreement(plane, other).is_within({}));
 }
 
-TEST(MapAgreement, APartnerIsTakenOnceAndOppositeSidesAreNotTheSame) {
-    PlaneMap a, b;
-    a.planes = {rectangle(1, {0, 0, 0}, 2, 1), rectangle(2, {0, 0, 0.005}, 1, 1)};
-    b.planes = {rectangle(5, {0, 0, 0}, 2, 1)};
-    const auto pairs = pair_planes(a, b);
-    EXPECT_EQ(pairs[0].id_b, 5);
-    EXPECT_EQ(pairs[1].id_b, -1);
-    EXPECT_FALSE(pairs[1].agrees({}));
-    b.planes = {rectangle(5, {0, 0, 0}, 2, 1, 3.14159265358979)};
-    EXPECT_EQ(pair_planes(a, b)[0].id_b, -1);
-    EXPECT_EQ(pair_planes(a, {})[0].id_b, -1);
+TEST(MapAgreement, ThePartnerIsTheOneWithMostInCommonAndOppositeSidesAreNotTheSame) {
+    const MapPlane plane = rectangle(1, {0, 0, 0}, 2, 1);
+    PlaneMap other;
+    other.planes = {rectangle(4, {0, 0, 0}, 1, 1), rectangle(5, {0, 0, 0.005}, 2, 1)};
+    EXPECT_EQ(best_agreement(plane, other).id_b, 5);
+    other.planes = {rectangle(5, {0, 0, 0}, 2, 1, 3.14159265358979)};
+    EXPECT_EQ(best_agreement(plane, other).id_b, -1);
+    EXPECT_FALSE(best_agreement(plane, {}).is_within({}));
 }
 
 }  // namespace
-}  // namespace planemap
+}  // namespace planemap::test

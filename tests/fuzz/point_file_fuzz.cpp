@@ -2,7 +2,7 @@
 #include <stdexcept>
 
 #include "fuzz/fuzz.hpp"
-#include "report/point_file.hpp"
+#include "report_page/point_file.hpp"
 
 namespace planemap::fuzz {
 

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # bare_root.sh BUILD: the Debian packages on a bare Debian 12. Makes them, debootstraps a root of nothing but Debian's
 # minimal system, installs planemap there as a user does, runs it, builds the examples on it, and says how large it is.
+# Packages that a robot has no use for (compilers, Java, windows) must not come with it.
 # Needs root and Debian's mirror.
 set -euo pipefail
 
@@ -27,12 +28,17 @@ cp "$work"/packages/planemap_*.deb "$work"/packages/planemap-dev_*.deb "$root/tm
 inside() { chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8 "$@"; }
 inside apt-get -qq update
 before="$(du -sm --one-file-system "$root/usr" | cut -f1)"
+inside dpkg-query -W -f '${Package}\n' | sort >"$work/packages_before"
 inside bash -c 'apt-get -qq install -y --no-install-recommends /tmp/planemap_*.deb' >"$work/apt.log" 2>&1 || fail "apt: $(tail -n 5 "$work/apt.log")"
 after="$(du -sm --one-file-system "$root/usr" | cut -f1)"
 echo "planemap: $(inside dpkg-query -W -f '${Installed-Size}' planemap) kB installed, with what it needs $((after - before)) MB"
-for unwanted in g++ gcc cmake default-jre-headless openjdk-17-jre-headless libgtk-3-0 libqt5widgets5 libx11-6; do
-    if inside dpkg-query -W -f '${db:Status-Status}' "$unwanted" 2>/dev/null | grep -qx installed; then echo "note: it brings $unwanted"; fi
-done
+# A robot needs no compiler, no Java and no windows. What comes all the same, and why: libx11-6, libx11-data and
+# libx11-xcb1 of opencv_core, which links libGL, whose libGLX has them.
+unwanted='^(g\+\+|gcc|cpp|clang|cmake|make|binutils)(-[0-9.]+)?$|-dev$|-(jre|jdk)(-|$)|^lib(gtk|qt[0-9]|vtk|x11|wayland)'
+excepted='libx11-6|libx11-data|libx11-xcb1'
+brought="$(inside dpkg-query -W -f '${Package}\n' | sort | comm -13 "$work/packages_before" - |
+    { grep -E -- "$unwanted" || true; } | { grep -vxE -- "$excepted" || true; } | paste -sd' ')"
+[[ -z "$brought" ]] || fail "it brings $brought"
 inside planemap-run 'sim:office?frames=20&width=320&height=240' --output /tmp/office --quiet >"$work/report.txt" || fail "planemap-run"
 grep -q OctoMap "$work/report.txt" || fail "no report"
 inside planemap-evaluate /tmp/office/groundtruth.txt /tmp/office/trajectory.txt >/dev/null || fail "planemap-evaluate"

@@ -29,7 +29,7 @@ PlaneMap room() {
 }
 
 WorldFrames of(const PlaneMap& map_a, const Trajectory& a, const PlaneMap& map_b, const Trajectory& b) {
-    return compare_world_frames(map_a, a, map_b, b, match_planes(map_a, map_b));
+    return compare_world_frames(map_a, a, map_b, b, evaluation::match_planes(map_a, map_b));
 }
 
 TEST(WorldFrames, PosesOfTheSameMomentsTell) {

@@ -62,9 +62,10 @@ TEST(LeafAccuracy, IsTheDefinitions) {
         distances.push_back(std::abs(reading.distance_m));
         squares += reading.distance_m * reading.distance_m;
     }
-    EXPECT_EQ(accuracy.to_planes().count(), 20001);
-    EXPECT_NEAR(accuracy.to_planes().rms_m(), std::sqrt(squares / 20001), 1e-9);
-    EXPECT_NEAR(accuracy.to_planes().median_m(), median_of(distances), 0.01 * median_of(distances));
+    const auto figures = accuracy.figures();
+    EXPECT_EQ(figures.at("readings"), 20001);
+    EXPECT_NEAR(figures.at("planes").at("rms_m"), std::sqrt(squares / 20001), 1e-9);
+    EXPECT_NEAR(figures.at("planes").at("median_m"), median_of(distances), 0.01 * median_of(distances));
     for (const LeafRow& row : accuracy.rows()) {
         std::vector<double> to_leaves;
         for (const JudgedReading& reading : readings) {

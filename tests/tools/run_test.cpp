@@ -95,18 +95,9 @@ void expect_points_and_growth(const Json& report, const Json& again, const std::
     EXPECT_EQ(growth.at("planes").back(), report.at("planes"));
 }
 
-TEST_F(RunTest, WritesEverythingAndTheSameBytesAgain) {
-    for (const char* output : {"a", "b"}) {
-        const Result result = run("planemap-run", "'sim:office?frames=60' --output " + path(output));
-        ASSERT_EQ(result.exit_code, 0) << result.err;
-        EXPECT_NE(result.out.find("Every ratio below is at that coverage"), std::string::npos);
-    }
-    for (const char* file : {"trajectory.txt", "planes.json", "planes.ply", "planes.obj", "planes.mtl",
-                             "planes.glb", "floor_plan.geojson", "plane_map.lcmlog", "octomap.bt", "map.svg",
-                             "overhead.svg", "points.ply", "groundtruth.txt", "planes_truth.json"}) {
-        EXPECT_EQ(read_file(folder_ / "a" / file), read_file(folder_ / "b" / file)) << file;
-    }
-    const Json r = report("a");
+/// A run of 60 frames of a simulated world, all of them tracked, tells what there is to tell, and it makes
+/// sense.
+void expect_whole_report(const Json& r) {
     for (const char* key : {"input", "frames", "tracked", "lost", "stale", "degenerate", "keyframes",
                             "loop_closures", "planes", "components", "wall_s", "cpu_s", "peak_rss_mb"}) {
         EXPECT_TRUE(r.contains(key)) << key;
@@ -125,8 +116,6 @@ TEST_F(RunTest, WritesEverythingAndTheSameBytesAgain) {
         EXPECT_GT(r.at("sizes_bytes").at(key).get<std::int64_t>(), 0) << key;
     }
     EXPECT_EQ(r.at("sizes_bytes").at("raw_cloud").get<std::int64_t>(), 60LL * 640 * 480 * 12);
-    EXPECT_EQ(r.at("sizes_bytes").at("octomap_bt").get<std::uintmax_t>(),
-              std::filesystem::file_size(folder_ / "a" / "octomap.bt"));
     EXPECT_EQ(r.at("octomap").at("resolution_m").get<double>(), 0.05);
     EXPECT_EQ(r.at("frames"), 60);
     EXPECT_EQ(r.at("tracked"), 60);
@@ -135,6 +124,23 @@ TEST_F(RunTest, WritesEverythingAndTheSameBytesAgain) {
         EXPECT_LE(r.at("coverage").at(key).get<double>(), 1.0) << key;
     }
     EXPECT_LT(r.at("accuracy").at("ate_rmse_m").get<double>(), 0.05);
+}
+
+TEST_F(RunTest, WritesEverythingAndTheSameBytesAgain) {
+    for (const char* output : {"a", "b"}) {
+        const Result result = run("planemap-run", "'sim:office?frames=60' --output " + path(output));
+        ASSERT_EQ(result.exit_code, 0) << result.err;
+        EXPECT_NE(result.out.find("Every ratio below is at that coverage"), std::string::npos);
+    }
+    for (const char* file : {"trajectory.txt", "planes.json", "planes.ply", "planes.obj", "planes.mtl",
+                             "planes.glb", "floor_plan.geojson", "plane_map.lcmlog", "octomap.bt", "map.svg",
+                             "overhead.svg", "points.ply", "groundtruth.txt", "planes_truth.json"}) {
+        EXPECT_EQ(read_file(folder_ / "a" / file), read_file(folder_ / "b" / file)) << file;
+    }
+    const Json r = report("a");
+    expect_whole_report(r);
+    EXPECT_EQ(r.at("sizes_bytes").at("octomap_bt").get<std::uintmax_t>(),
+              std::filesystem::file_size(folder_ / "a" / "octomap.bt"));
     expect_points_and_growth(r, report("b"), read_file(folder_ / "a" / "points.ply"));
 
     messages::LogReader log(folder_ / "a" / "plane_map.lcmlog");

@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench_map/growth.hpp"
 
-#include <cmath>
-#include <stdexcept>
-
+#include "benchmark/rounds.hpp"
 #include "messages/convert.hpp"
 #include "run/input.hpp"
-#include "simulator/simulated_source.hpp"
 
 namespace planemap::bench_map {
 
-using benchmark::figure;
+using results::figure;
 
 namespace {
 
@@ -77,19 +74,10 @@ std::optional<double> Growth::cost_ratio() const {
     return figure(points.back(), "frame_ms") / figure(points[1], "frame_ms");
 }
 
-std::int64_t frames_a_round(const std::string& simulator_name) {
-    const simulator::SimulatorOptions options = simulator::parse_simulator_name(simulator_name);
-    if (options.visits > 0 || !options.trajectory.empty())
-        throw std::invalid_argument(simulator_name + ": --growth needs a walk that goes round");
-    const simulator::SimulatedSource source(options);
-    return std::lround(simulator::tour_duration(source.world().tour, source.hand(), options.seed) *
-                       options.rate_hz);
-}
-
 Growth measure_growth(const std::string& simulator_name, std::int64_t frames,
                       pipeline::PipelineOptions options, const std::function<void(std::int64_t)>& on_frame) {
     Growth growth;
-    Observer observer(frames_a_round(simulator_name), growth);
+    Observer observer(benchmark::frames_a_round(simulator_name), growth);
     options.with_octomap = false;
     messages::Bus bus("memq://");
     pipeline::Pipeline pipeline(bus, options);
@@ -107,20 +95,20 @@ Growth measure_growth(const std::string& simulator_name, std::int64_t frames,
 Json to_json(const std::string& sequence, const Growth& growth) {
     const auto itself = [](double value) { return value; };
     Json json{{"sequence", sequence}, {"points", growth.points}};
-    json["second_round_share"] = benchmark::known(growth.second_round(), itself);
-    json["cost_ratio"] = benchmark::known(growth.cost_ratio(), itself);
+    json["second_round_share"] = results::known(growth.second_round(), itself);
+    json["cost_ratio"] = results::known(growth.cost_ratio(), itself);
     return json;
 }
 
 std::string growth_table(const Growth& growth) {
-    using benchmark::text;
-    const benchmark::Table table{{"frames", "frames", 6},
-                                 {"keyframes", "keyframes", 10},
-                                 {"planes", "planes", 6},
-                                 {"message B", "message_bytes", 10},
-                                 {"memory B", "memory_bytes", 10},
-                                 {"map ms/keyframe", "map_ms", 16, 2},
-                                 {"all ms/frame", "frame_ms", 13, 2}};
+    using results::text;
+    const results::Table table{{"frames", "frames", 6},
+                               {"keyframes", "keyframes", 10},
+                               {"planes", "planes", 6},
+                               {"message B", "message_bytes", 10},
+                               {"memory B", "memory_bytes", 10},
+                               {"map ms/keyframe", "map_ms", 16, 2},
+                               {"all ms/frame", "frame_ms", 13, 2}};
     std::string lines = table.heading();
     for (const Json& point : growth.points) lines += table.line(point);
     for (std::size_t i = 0; i < growth.rounds.size(); ++i) {

@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "benchmark/table.hpp"
 #include "pipeline/pipeline.hpp"
+#include "results/table.hpp"
 
 namespace planemap::bench_map {
 
-using benchmark::Json;
+using results::Json;
 
 /// A point is what there is after so many frames: frames, keyframes, planes, message_bytes, memory_bytes, and
 /// since the point before map_ms (CPU time of the mapper, a keyframe: median) and frame_ms (CPU time of all
@@ -27,10 +27,6 @@ struct Growth {
     /// point's own frames are left out: a map begins small.
     std::optional<double> cost_ratio() const;
 };
-
-/// Frames of one round of a simulated world's tour; throws std::invalid_argument for another input, or a walk
-/// that is no tour.
-std::int64_t frames_a_round(const std::string& simulator_name);
 
 /// Runs the whole pipeline, without OctoMap, over all frames of a simulated world. Calls `on_frame` with the
 /// frames so far.

@@ -5,6 +5,7 @@
 
 #include "bench_map/growth.hpp"
 #include "bench_map/row.hpp"
+#include "bench_map/surfaces.hpp"
 #include "bench_map/true_poses.hpp"
 #include "benchmark/choices.hpp"
 #include "benchmark/report.hpp"
@@ -196,14 +197,11 @@ void report_growth(const Arguments& arguments, const std::vector<SequenceInfo>& 
 }
 
 int run(const Arguments& arguments) {
-    FieldErrors errors("benchmark options");
-    arguments.check(errors);
-    errors.throw_if_any();
     const std::vector<SequenceInfo> sequences =
         benchmark::parse_sequences(arguments.sequences, kKnownSequences, benchmark::Unknown::kIsPath);
-    benchmark::Report report(arguments, "none: the truth is exact");
-    (arguments.growth ? report_growth : report_maps)(arguments, sequences, report);
-    report.finish();
+    benchmark::run_report(arguments, "none: the truth is exact", [&](benchmark::Report& report) {
+        (arguments.growth ? report_growth : report_maps)(arguments, sequences, report);
+    });
     return 0;
 }
 

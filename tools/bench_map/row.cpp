@@ -11,10 +11,10 @@ namespace planemap::bench_map {
 namespace {
 
 using namespace evaluation;
-using benchmark::cell;
-using benchmark::figure;
-using benchmark::known;
-using benchmark::text;
+using results::cell;
+using results::figure;
+using results::known;
+using results::text;
 
 void add_surfaces(const std::vector<SurfaceCheck>& surfaces, Json& json) {
     std::vector<double> degrees, metres;
@@ -102,61 +102,61 @@ Json to_json(const Row& row) {
     json.update(evaluation::soundness_figures(row.run.soundness));
     json["message_bytes"] = row.run.message_bytes;
     json["memory_bytes"] = row.run.memory_bytes;
-    json["update_median_ms"] = benchmark::number(row.run.update_median_ms);
-    json["update_p95_ms"] = benchmark::number(row.run.update_p95_ms);
-    json["rebuild_ms"] = benchmark::number(row.run.rebuild_ms);
+    json["update_median_ms"] = results::number(row.run.update_median_ms);
+    json["update_p95_ms"] = results::number(row.run.update_p95_ms);
+    json["rebuild_ms"] = results::number(row.run.rebuild_ms);
     add_surfaces(row.surfaces, json);
     return json;
 }
 
-const benchmark::Table& table() {
-    using benchmark::kBar;
-    using benchmark::milli;
-    using benchmark::percent;
-    static const benchmark::Table kTable{{"sequence", "sequence", -20},
-                                         {"poses", "poses", -9},
-                                         {"kf", "keyframes", 5},
-                                         {"planes", "planes", 6},
-                                         kBar,
-                                         {"true", "planes_true", 4},
-                                         {"found", "found", 5},
-                                         {"split", "split", 5},
-                                         {"spur", "spurious", 4},
-                                         kBar,
-                                         {"dist mm", "distance_error_mean_m", 8, 1, milli},
-                                         {"med", "distance_error_median_m", 4, 0, milli},
-                                         {"worst", "distance_error_worst_m", 5, 0, milli},
-                                         {"%", "distance_error_mean_percent", 5, 2},
-                                         kBar,
-                                         {"ang deg", "angle_error_mean_deg", 7, 2},
-                                         {"med", "angle_error_median_deg", 5, 2},
-                                         {"worst", "angle_error_worst_deg", 5, 2},
-                                         kBar,
-                                         {"IoU", "outline_iou", 5, 3},
-                                         {"worst", "outline_iou_worst", 5, 3},
-                                         kBar,
-                                         {"edge %", "edges_found", 6, 1, percent},
-                                         {"right", "lines_right", 5, 1, percent},
-                                         {"corn %", "corners_found", 6, 1, percent},
-                                         {"right", "points_right", 5, 1, percent},
-                                         {"gap mm", "outline_to_line_p90_m", 6, 1, milli},
-                                         kBar,
-                                         {"dbl %", "doubled_area", 5, 1, percent},
-                                         {"flt %", "floating_area", 5, 1, percent},
-                                         {"expl %", "explained_points", 6, 1, percent},
-                                         {"5 cm", "explained_points_5cm", 5, 1, percent},
-                                         {"rms mm", "point_to_plane_rms_m", 6, 1, milli},
-                                         {"bias", "point_to_plane_bias_m", 5, 1, milli},
-                                         kBar,
-                                         {"leaves", "leaves_explained", 6, 3},
-                                         {"area", "area_supported", 5, 3},
-                                         kBar,
-                                         {"msg B", "message_bytes", 8},
-                                         {"mem B", "memory_bytes", 8},
-                                         kBar,
-                                         {"upd ms", "update_median_ms", 7, 2},
-                                         {"p95", "update_p95_ms", 5, 1},
-                                         {"rebuild", "rebuild_ms", 7, 1}};
+const results::Table& table() {
+    using results::kBar;
+    using results::milli;
+    using results::percent;
+    static const results::Table kTable{{"sequence", "sequence", -20},
+                                       {"poses", "poses", -9},
+                                       {"kf", "keyframes", 5},
+                                       {"planes", "planes", 6},
+                                       kBar,
+                                       {"true", "planes_true", 4},
+                                       {"found", "found", 5},
+                                       {"split", "split", 5},
+                                       {"spur", "spurious", 4},
+                                       kBar,
+                                       {"dist mm", "distance_error_mean_m", 8, 1, milli},
+                                       {"med", "distance_error_median_m", 4, 0, milli},
+                                       {"worst", "distance_error_worst_m", 5, 0, milli},
+                                       {"%", "distance_error_mean_percent", 5, 2},
+                                       kBar,
+                                       {"ang deg", "angle_error_mean_deg", 7, 2},
+                                       {"med", "angle_error_median_deg", 5, 2},
+                                       {"worst", "angle_error_worst_deg", 5, 2},
+                                       kBar,
+                                       {"IoU", "outline_iou", 5, 3},
+                                       {"worst", "outline_iou_worst", 5, 3},
+                                       kBar,
+                                       {"edge %", "edges_found", 6, 1, percent},
+                                       {"right", "lines_right", 5, 1, percent},
+                                       {"corn %", "corners_found", 6, 1, percent},
+                                       {"right", "points_right", 5, 1, percent},
+                                       {"gap mm", "outline_to_line_p90_m", 6, 1, milli},
+                                       kBar,
+                                       {"dbl %", "doubled_area", 5, 1, percent},
+                                       {"flt %", "floating_area", 5, 1, percent},
+                                       {"expl %", "explained_points", 6, 1, percent},
+                                       {"5 cm", "explained_points_5cm", 5, 1, percent},
+                                       {"rms mm", "point_to_plane_rms_m", 6, 1, milli},
+                                       {"bias", "point_to_plane_bias_m", 5, 1, milli},
+                                       kBar,
+                                       {"leaves", "leaves_explained", 6, 3},
+                                       {"area", "area_supported", 5, 3},
+                                       kBar,
+                                       {"msg B", "message_bytes", 8},
+                                       {"mem B", "memory_bytes", 8},
+                                       kBar,
+                                       {"upd ms", "update_median_ms", 7, 2},
+                                       {"p95", "update_p95_ms", 5, 1},
+                                       {"rebuild", "rebuild_ms", 7, 1}};
     return kTable;
 }
 

@@ -7,20 +7,20 @@
 #include <vector>
 
 #include "bench_map/run.hpp"
-#include "bench_map/surface_check.hpp"
-#include "benchmark/table.hpp"
 #include "evaluate/judgement_report.hpp"
+#include "evaluate/surface_check.hpp"
+#include "results/table.hpp"
 
 namespace planemap::bench_map {
 
-using benchmark::Json;
+using results::Json;
 
 struct Row {
     std::string sequence;
     std::string poses;  ///< "estimated", "true", or "noise1" and so on
     MapRun run;
     std::optional<evaluation::Judgement> judgement;                 ///< nothing without the true planes
-    std::vector<SurfaceCheck> surfaces;                             ///< empty where it was not done
+    std::vector<evaluation::SurfaceCheck> surfaces;                 ///< empty where it was not done
     std::optional<evaluation::EdgeJudgement> edges = std::nullopt;  ///< nothing without the true planes
     std::optional<evaluation::InferredJudgement> inferred = std::nullopt;  ///< the same
 };
@@ -29,7 +29,7 @@ struct Row {
 Json to_json(const Row& row);
 
 /// What people see of a row's JSON.
-const benchmark::Table& table();
+const results::Table& table();
 
 /// What to look at: true planes not found or split, spurious map planes, the worst outline, the pairs with
 /// the largest errors, true planes that look alike, surfaces. With `all`, every true plane. Empty if all is

@@ -6,11 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bench_odometry/closures.hpp"
 #include "benchmark/child.hpp"
 #include "benchmark/choices.hpp"
 #include "benchmark/rendering.hpp"
-#include "core/angle.hpp"
+#include "evaluate/closure_judge.hpp"
 #include "sensor/source.hpp"
 
 namespace planemap::bench_odometry {
@@ -32,14 +31,6 @@ constexpr const char* kSmall = "width=320&height=240&blur=4&jitter=0.005";
 
 std::string small(const std::string& world, const std::string& more) {
     return world + "?" + kSmall + "&" + more;
-}
-
-/// Closures and poses against keyframes are held to the same tolerance.
-bool is_false(const Pose& estimate, const Pose& truth) {
-    const ClosureTolerance tolerance;
-    const Twist error = pose_error(estimate, truth);
-    const double allowed_m = tolerance.base_m + tolerance.share_of_distance * truth.translation().norm();
-    return !(error.head<3>().norm() <= allowed_m && degrees(error.tail<3>().norm()) <= tolerance.angle_deg);
 }
 
 /// The true pose of a later frame's camera in an earlier one's.
@@ -72,21 +63,21 @@ void count(const Judgement& judgement, TrackingStatus status, MomentRow& row) {
     row.worst_deg = std::max(row.worst_deg, judgement.degrees);
 }
 
-const benchmark::Table& moment_table() {
-    using benchmark::kBar;
-    static const benchmark::Table kTable{{"moment", "moment", -13},
-                                         {"frames", "frames", 6},
-                                         kBar,
-                                         {"wrong", "wrong", 5},
-                                         {"no pose", "no_pose", 7},
-                                         {"degen.", "degenerate", 6},
-                                         {"stale", "stale", 5},
-                                         {"parts", "parts", 5},
-                                         kBar,
-                                         {"worst m", "worst_m", 7, 3},
-                                         {"deg", "worst_deg", 5, 1},
-                                         kBar,
-                                         {"NEES %", "nees_share", 6, 0, benchmark::percent}};
+const results::Table& moment_table() {
+    using results::kBar;
+    static const results::Table kTable{{"moment", "moment", -13},
+                                       {"frames", "frames", 6},
+                                       kBar,
+                                       {"wrong", "wrong", 5},
+                                       {"no pose", "no_pose", 7},
+                                       {"degen.", "degenerate", 6},
+                                       {"stale", "stale", 5},
+                                       {"parts", "parts", 5},
+                                       kBar,
+                                       {"worst m", "worst_m", 7, 3},
+                                       {"deg", "worst_deg", 5, 1},
+                                       kBar,
+                                       {"NEES %", "nees_share", 6, 0, results::percent}};
     return kTable;
 }
 
@@ -190,9 +181,9 @@ void run_returns(const BenchmarkOptions& options, const BadSequence& bad, benchm
         return make_returns_row(run(opened, script, true, options, what), bad.walk, kCuts, kReturnFrames);
     });
     row.sequence = bad.sequence.name;
-    report.print(benchmark::text("\n%s: %s\n  %d returns after 180 s, %d frames each: %d found, %d false\n",
-                                 bad.sequence.name.c_str(), bad.sequence.what.c_str(), row.cuts,
-                                 static_cast<int>(kReturnFrames), row.found, row.wrong));
+    report.print(results::text("\n%s: %s\n  %d returns after 180 s, %d frames each: %d found, %d false\n",
+                               bad.sequence.name.c_str(), bad.sequence.what.c_str(), row.cuts,
+                               static_cast<int>(kReturnFrames), row.found, row.wrong));
     report.add(to_json(row));
 }
 
@@ -313,7 +304,7 @@ ReturnsRow make_returns_row(const Told& told, std::size_t walk, int cuts, std::s
             const std::optional<Pose> truth = true_relation(told, from, to);
             if (!truth) return;
             is_placed = true;
-            is_wrong = is_wrong || is_false(from_from_to, *truth);
+            is_wrong = is_wrong || evaluation::closure_error(from_from_to, *truth).is_false;
         };
         for (std::size_t i = begin; i < std::min(end, told.frames.size()); ++i) {
             const OdometryEstimate& estimate = told.frames[i].estimate;
@@ -346,8 +337,8 @@ void print_bad_moments(const BenchmarkOptions& given, const std::string& sequenc
             run_moments(options, bad, moments, sum, report);
         }
     });
-    report.print(benchmark::text("\nAll moments: %d frames, %d wrong, %d without a pose\n", sum.frames,
-                                 sum.wrong, sum.no_pose));
+    report.print(results::text("\nAll moments: %d frames, %d wrong, %d without a pose\n", sum.frames,
+                               sum.wrong, sum.no_pose));
 }
 
 }  // namespace planemap::bench_odometry

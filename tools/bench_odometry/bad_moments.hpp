@@ -49,7 +49,7 @@ struct ReturnsRow {
 };
 /// Judges `cuts` returns of `frames` frames each, the first at frame `walk`. A return is placed when a frame
 /// of it has a pose against a keyframe from before it, or a loop closure ties a keyframe of it to one; wrong,
-/// when one such relation is false as judge() of closures has it.
+/// when one such relation is false as evaluation::judge_closure() has it.
 ReturnsRow make_returns_row(const Told& told, std::size_t walk, int cuts, std::size_t frames);
 
 /// Runs the moments named (empty: all) of the sequences named, each in a process of its own, and reports a

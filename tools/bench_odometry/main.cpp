@@ -157,9 +157,9 @@ std::string bad_sequences_of(const Arguments& arguments) {
 
 int run_bad_moments(const Arguments& arguments) {
     arguments.validate();
-    benchmark::Report report(arguments, "no peers");
-    print_bad_moments(arguments, bad_sequences_of(arguments), arguments.moments, report);
-    report.finish();
+    benchmark::run_report(arguments, "no peers", [&](benchmark::Report& report) {
+        print_bad_moments(arguments, bad_sequences_of(arguments), arguments.moments, report);
+    });
     return 0;
 }
 
@@ -170,15 +170,13 @@ int run(const Arguments& arguments) {
     const std::vector<MethodInfo> methods = methods_of(arguments);
     const Benchmark runner(arguments);
     if (!arguments.plots.empty()) ResultFolder(arguments.plots, {});  // an error now, not in an hour
-    benchmark::Report report(arguments, "OpenCV " CV_VERSION " as Debian builds it");
-    if (arguments.table2) {
-        print_table2(runner, methods, report);
-    } else {
+    const std::string peers = "OpenCV " CV_VERSION " as Debian builds it";
+    benchmark::run_report(arguments, peers, [&](benchmark::Report& report) {
+        if (arguments.table2) return print_table2(runner, methods, report);
         report.for_each(sequences, [&](const SequenceInfo& info) {
             run_sequence(runner, info, methods, arguments.plots, report);
         });
-    }
-    report.finish();
+    });
     return 0;
 }
 

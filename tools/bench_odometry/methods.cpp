@@ -23,14 +23,14 @@ pipeline::PipelineOptions options_of(const std::string& method, pipeline::Pipeli
 }
 
 /// The graph's closures, at the moments that its keyframes' poses are of.
-std::vector<Closure> closures_of(pipeline::Pipeline& pipeline) {
+std::vector<evaluation::Closure> closures_of(pipeline::Pipeline& pipeline) {
     const auto pose_utime = [&](std::int64_t utime) {
         const auto& estimates = pipeline.estimates();
         const auto estimate =
             std::find_if(estimates.begin(), estimates.end(), [&](const auto& e) { return e.utime == utime; });
         return estimate == estimates.end() ? utime : estimate->pose_utime;
     };
-    std::vector<Closure> closures;
+    std::vector<evaluation::Closure> closures;
     for (const graph::LoopClosure& closure : pipeline.graph()->graph().loop_closures())
         closures.push_back(
             {pose_utime(closure.from_utime), pose_utime(closure.to_utime), closure.from_from_to});

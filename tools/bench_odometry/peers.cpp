@@ -6,7 +6,7 @@
 #include <opencv2/rgbd/depth.hpp>
 #include <optional>
 
-#include "benchmark/readings.hpp"
+#include "evaluate/readings.hpp"
 #include "messages/channels.hpp"
 #include "messages/frame_decoder.hpp"
 #include "messages/module_status.hpp"
@@ -23,7 +23,7 @@ cv::Mat luma(const GrayImage& gray) {
 /// Metres; NaN where there is no reading to trust.
 cv::Mat metric(const DepthImage& depth, const CameraInfo& camera) {
     cv::Mat metres(depth.height, depth.width, CV_32F, std::numeric_limits<float>::quiet_NaN());
-    benchmark::for_each_reading(
+    evaluation::for_each_reading(
         depth, camera, [&](int u, int v, double z) { metres.at<float>(v, u) = static_cast<float>(z); });
     return metres;
 }

@@ -7,14 +7,14 @@
 #include <cstdio>
 #include <limits>
 
-#include "benchmark/table.hpp"
 #include "core/angle.hpp"
+#include "results/table.hpp"
 
 namespace planemap::bench_odometry {
 
-using benchmark::text;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
+using results::text;
 
 namespace {
 

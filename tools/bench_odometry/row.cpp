@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "evaluate/evaluation_report.hpp"
+
 namespace planemap::bench_odometry {
 
 namespace {
@@ -63,77 +65,65 @@ Row make_row(const std::string& sequence, const std::string& method, const std::
     row.run = std::move(run);
     if (truth) row.evaluation = evaluate(*truth, row.run.trajectory, {});
     if (truth) row.nees_share = nees_share(*truth, row.run.relatives);
-    for (const Closure& closure : row.run.closures)
-        row.loops.push_back(judge(truth.value_or(Trajectory()), closure));
+    for (const evaluation::Closure& closure : row.run.closures)
+        row.loops.push_back(evaluation::judge_closure(truth.value_or(Trajectory()), closure));
     return row;
 }
 
-const benchmark::Table& table() {
-    using benchmark::kBar;
-    using benchmark::milli;
-    static const benchmark::Table kTable{{"method", "method", -17},
-                                         {"frames", "frames", 6},
-                                         {"lost", "lost", 4},
-                                         kBar,
-                                         {"ATE m", "ate_m", 7, 4},
-                                         kBar,
-                                         {"frame mm", "rpe_frame_m", 8, 2, milli},
-                                         {"deg", "rpe_frame_deg", 6, 3},
-                                         kBar,
-                                         {"1 s mm", "rpe_1s_m", 8, 1, milli},
-                                         {"deg", "rpe_1s_deg", 6, 3},
-                                         kBar,
-                                         {"scale %", "scale", 7, 2, too_large_percent},
-                                         kBar,
-                                         {"NEES %", "nees_share", 6, 0, benchmark::percent},
-                                         kBar,
-                                         {"ms", "median_ms", 6, 2},
-                                         {"p95", "p95_ms", 6, 2},
-                                         {"seg ms", "segmentation_ms", 8, 2},
-                                         {"graph s", "graph_cpu_s", 8, 2},
-                                         kBar,
-                                         {"CPU s", "cpu_s", 7, 1},
-                                         {"RSS MB", "peak_rss_mb", 7, 0},
-                                         kBar,
-                                         {"kf", "keyframes", 4},
-                                         {"true", "loops_true", 4},
-                                         {"false", "loops_false", 5}};
+const results::Table& table() {
+    using results::kBar;
+    using results::milli;
+    static const results::Table kTable{{"method", "method", -17},
+                                       {"frames", "frames", 6},
+                                       {"lost", "lost", 4},
+                                       kBar,
+                                       {"ATE m", "ate_m", 7, 4},
+                                       kBar,
+                                       {"frame mm", "rpe_frame_m", 8, 2, milli},
+                                       {"deg", "rpe_frame_deg", 6, 3},
+                                       kBar,
+                                       {"1 s mm", "rpe_1s_m", 8, 1, milli},
+                                       {"deg", "rpe_1s_deg", 6, 3},
+                                       kBar,
+                                       {"scale %", "scale", 7, 2, too_large_percent},
+                                       kBar,
+                                       {"NEES %", "nees_share", 6, 0, results::percent},
+                                       kBar,
+                                       {"ms", "median_ms", 6, 2},
+                                       {"p95", "p95_ms", 6, 2},
+                                       {"seg ms", "segmentation_ms", 8, 2},
+                                       {"graph s", "graph_cpu_s", 8, 2},
+                                       kBar,
+                                       {"CPU s", "cpu_s", 7, 1},
+                                       {"RSS MB", "peak_rss_mb", 7, 0},
+                                       kBar,
+                                       {"kf", "keyframes", 4},
+                                       {"true", "loops_true", 4},
+                                       {"false", "loops_false", 5}};
     return kTable;
 }
 
 Json to_json(const Row& row) {
-    using benchmark::known;
-    using benchmark::number;
-    const Evaluation e = row.evaluation.value_or(Evaluation());
-    const auto metres = [](const RelativeError& error) { return error.metres.rmse; };
-    const auto degrees = [](const RelativeError& error) { return error.degrees.rmse; };
-    return {{"sequence", row.sequence},
-            {"method", row.method},
-            {"frames", row.run.frames},
-            {"path_m", known(row.evaluation, [](const Evaluation& all) { return all.path_length_m; })},
-            {"ate_m", known(e.ate, [](const AbsoluteError& error) { return error.metres.rmse; })},
-            {"rpe_frame_m", known(e.rpe_frame, metres)},
-            {"rpe_frame_deg", known(e.rpe_frame, degrees)},
-            {"rpe_1s_m", known(e.rpe_1s, metres)},
-            {"rpe_1s_deg", known(e.rpe_1s, degrees)},
-            {"scale", known(e.ate, [](const AbsoluteError& error) { return number(error.scale); })},
-            {"nees_share", known(row.nees_share, [](double share) { return share; })},
-            {"lost", row.lost()},
-            {"median_ms", times_known(row.run.tracking, row.run.tracking.median_ms)},
-            {"p95_ms", times_known(row.run.tracking, row.run.tracking.p95_ms)},
-            {"segmentation_ms", times_known(row.run.segmentation, row.run.segmentation.median_ms)},
-            {"odometry_cpu_s", row.run.tracking.total_s},
-            {"segmentation_cpu_s", row.run.segmentation.total_s},
-            {"graph_cpu_s", row.run.graph.total_s},
-            {"decoding_s", row.run.decoding.total_s},
-            {"cpu_s", row.cpu_s},
-            {"peak_rss_mb", row.peak_rss_mb},
-            {"keyframes", row.run.keyframes},
-            {"loops_true", loops(row, false)},
-            {"loops_false", loops(row, true)},
-            {"loops_unjudged",
-             std::count_if(row.loops.begin(), row.loops.end(), [](const auto& l) { return !l; })},
-            {"false_loops", false_loops(row)}};
+    Json json{{"sequence", row.sequence}, {"method", row.method}, {"frames", row.run.frames}};
+    json.update(evaluation::row_figures(row.evaluation));
+    json.update(Json{{"nees_share", results::known(row.nees_share, [](double share) { return share; })},
+                     {"lost", row.lost()},
+                     {"median_ms", times_known(row.run.tracking, row.run.tracking.median_ms)},
+                     {"p95_ms", times_known(row.run.tracking, row.run.tracking.p95_ms)},
+                     {"segmentation_ms", times_known(row.run.segmentation, row.run.segmentation.median_ms)},
+                     {"odometry_cpu_s", row.run.tracking.total_s},
+                     {"segmentation_cpu_s", row.run.segmentation.total_s},
+                     {"graph_cpu_s", row.run.graph.total_s},
+                     {"decoding_s", row.run.decoding.total_s},
+                     {"cpu_s", row.cpu_s},
+                     {"peak_rss_mb", row.peak_rss_mb},
+                     {"keyframes", row.run.keyframes},
+                     {"loops_true", loops(row, false)},
+                     {"loops_false", loops(row, true)},
+                     {"loops_unjudged",
+                      std::count_if(row.loops.begin(), row.loops.end(), [](const auto& l) { return !l; })},
+                     {"false_loops", false_loops(row)}});
+    return json;
 }
 
 }  // namespace planemap::bench_odometry

@@ -8,19 +8,19 @@
 
 #include "bench_odometry/pose_judge.hpp"
 #include "bench_odometry/run.hpp"
-#include "benchmark/table.hpp"
 #include "evaluate/evaluation.hpp"
+#include "results/table.hpp"
 
 namespace planemap::bench_odometry {
 
-using benchmark::Json;
+using results::Json;
 
 struct Row {
     std::string sequence, method;
     MethodRun run;
-    double cpu_s = 0, peak_rss_mb = 0;               ///< of the whole process, reading and decoding included
-    std::optional<Evaluation> evaluation;            ///< nothing without truth
-    std::vector<std::optional<ClosureError>> loops;  ///< of run.closures, see judge()
+    double cpu_s = 0, peak_rss_mb = 0;     ///< of the whole process, reading and decoding included
+    std::optional<Evaluation> evaluation;  ///< nothing without truth
+    std::vector<std::optional<evaluation::ClosureError>> loops;  ///< of run.closures, see judge_closure()
     /// Share of run.relatives whose normalised estimation error squared is below kNees95; nothing without
     /// truth or covariance.
     std::optional<double> nees_share;
@@ -34,7 +34,7 @@ Row make_row(const std::string& sequence, const std::string& method, const std::
              MethodRun run);
 
 /// What people see of a row's JSON.
-const benchmark::Table& table();
+const results::Table& table();
 
 /// A row as --json writes it; null for what the data does not allow.
 Json to_json(const Row& row);

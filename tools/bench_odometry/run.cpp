@@ -38,10 +38,15 @@ struct adl_serializer<planemap::StampedPose> {
 
 }  // namespace nlohmann
 
+namespace planemap::evaluation {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Closure, from_utime, to_utime, from_from_to)
+
+}  // namespace planemap::evaluation
+
 namespace planemap::bench_odometry {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(StageTime, median_ms, p95_ms, total_s, count)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Closure, from_utime, to_utime, from_from_to)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Relative, keyframe_utime, utime, keyframe_from_camera, covariance)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(MethodRun, frames, trajectory, tracking, graph, segmentation, decoding,
                                    keyframes, closures, relatives)

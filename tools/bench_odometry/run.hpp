@@ -6,9 +6,9 @@
 #include <nlohmann/json_fwd.hpp>
 #include <vector>
 
-#include "bench_odometry/closures.hpp"
 #include "core/histogram.hpp"
 #include "core/trajectory.hpp"
+#include "evaluate/closure_judge.hpp"
 
 namespace planemap::bench_odometry {
 
@@ -34,7 +34,7 @@ struct MethodRun {
     StageTime segmentation;   ///< a frame
     StageTime decoding;       ///< images, and depth registered to colour, a frame; wall clock
     int keyframes = 0;
-    std::vector<Closure> closures;
+    std::vector<evaluation::Closure> closures;
     std::vector<Relative> relatives;  ///< frames with a pose; empty where the method says no covariance
 };
 

@@ -29,9 +29,9 @@ std::vector<Part> parts() {
 }
 
 std::string text_of(const std::string& name, const Table2Line& line) {
-    return benchmark::text("%-19s %4d %8d %4d | %6.4f +- %6.4f | %6.4f +- %6.4f | %6.3f +- %5.3f\n",
-                           name.c_str(), line.runs, line.revisits, line.lost, line.ate_m.mean, line.ate_m.std,
-                           line.rpe_m.mean, line.rpe_m.std, line.rpe_deg.mean, line.rpe_deg.std);
+    return results::text("%-19s %4d %8d %4d | %6.4f +- %6.4f | %6.4f +- %6.4f | %6.3f +- %5.3f\n",
+                         name.c_str(), line.runs, line.revisits, line.lost, line.ate_m.mean, line.ate_m.std,
+                         line.rpe_m.mean, line.rpe_m.std, line.rpe_deg.mean, line.rpe_deg.std);
 }
 
 Json to_json(const std::string& part, const std::string& method, const Table2Line& line) {
@@ -49,17 +49,17 @@ Json to_json(const std::string& part, const std::string& method, const Table2Lin
 }
 
 /// The errors of all methods on all runs of a part, by method. Says what is missing.
-std::map<std::string, std::vector<RevisitErrors>> errors_of(const Part& part, const Benchmark& runner,
-                                                            const std::vector<MethodInfo>& methods,
-                                                            benchmark::Report& report) {
-    std::map<std::string, std::vector<RevisitErrors>> errors;
+std::map<std::string, std::vector<evaluation::RevisitErrors>> errors_of(
+    const Part& part, const Benchmark& runner, const std::vector<MethodInfo>& methods,
+    benchmark::Report& report) {
+    std::map<std::string, std::vector<evaluation::RevisitErrors>> errors;
     report.for_each(part.runs, [&](const SequenceInfo& info) {
         const Sequence sequence = runner.open(info);
         if (!sequence.truth) throw benchmark::DataMissing("It has no groundtruth.txt");
-        const std::vector<Place> places = find_places(*sequence.truth);
+        const std::vector<evaluation::VisitedPlace> places = evaluation::find_places(*sequence.truth);
         for (const MethodInfo& method : methods) {
             const Row row = runner.run(sequence, method);
-            const auto error = revisit_errors(*sequence.truth, row.run.trajectory, places);
+            const auto error = evaluation::revisit_errors(*sequence.truth, row.run.trajectory, places);
             if (error) {
                 errors[method.name].push_back(*error);
             } else {
@@ -72,10 +72,10 @@ std::map<std::string, std::vector<RevisitErrors>> errors_of(const Part& part, co
 
 }  // namespace
 
-Table2Line summarised(const std::vector<RevisitErrors>& runs) {
+Table2Line summarised(const std::vector<evaluation::RevisitErrors>& runs) {
     Table2Line line;
     std::vector<double> ate_m, rpe_m, rpe_deg;
-    for (const RevisitErrors& run : runs) {
+    for (const evaluation::RevisitErrors& run : runs) {
         ++line.runs;
         line.revisits += run.revisits;
         line.lost += run.lost;
@@ -104,8 +104,8 @@ void print_table2(const Benchmark& runner, const std::vector<MethodInfo>& method
             report.print(text_of(method.name, line));
             report.add(to_json(part.name, method.name, line));
         }
-        report.print(benchmark::text("%-38s | %6.4f +- %6.4f | %6.4f +- %6.4f | %6.3f +- %5.3f\n",
-                                     "the paper, in its own office", 0.006, 0.003, 0.014, 0.002, 1.30, 0.54));
+        report.print(results::text("%-38s | %6.4f +- %6.4f | %6.4f +- %6.4f | %6.3f +- %5.3f\n",
+                                   "the paper, in its own office", 0.006, 0.003, 0.014, 0.002, 1.30, 0.54));
     }
 }
 

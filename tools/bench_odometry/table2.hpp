@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "bench_odometry/benchmark.hpp"
-#include "bench_odometry/revisits.hpp"
 #include "benchmark/report.hpp"
+#include "evaluate/revisits.hpp"
 
 namespace planemap::bench_odometry {
 
@@ -15,7 +15,7 @@ struct Table2Line {
     int runs = 0, revisits = 0, lost = 0;
     Statistics ate_m, rpe_m, rpe_deg;
 };
-Table2Line summarised(const std::vector<RevisitErrors>& runs);
+Table2Line summarised(const std::vector<evaluation::RevisitErrors>& runs);
 
 /// Runs the methods through redkitchen, whose five places are found by its true poses, and through four
 /// simulated walks about five places of an office in random order, and reports a table each.

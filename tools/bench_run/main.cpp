@@ -45,9 +45,6 @@ void add_flags(messages::Flags& flags, Arguments& arguments) {
 }
 
 int run(const Arguments& arguments) {
-    FieldErrors errors("benchmark options");
-    arguments.check(errors);
-    errors.throw_if_any();
     const std::vector<WayInfo> ways = benchmark::chosen("ways", arguments.ways, known_ways());
     const std::vector<benchmark::SequenceInfo> sequences = benchmark::parse_sequences(
         arguments.sequences, benchmark::with_recordings({}), benchmark::Unknown::kIsPath);
@@ -55,13 +52,13 @@ int run(const Arguments& arguments) {
     Bench bench{arguments.programs, arguments.data, scratch.path(), arguments.frames, arguments.threads};
     if (bench.programs.empty())
         bench.programs = std::filesystem::read_symlink("/proc/self/exe").parent_path();
-    benchmark::Report report(arguments, "OpenCV's RgbdPlane, OctoMap");
-    report.print("\n");
-    report.print(table().heading());
-    report.for_each(sequences, [&](const benchmark::SequenceInfo& sequence) {
-        for (const benchmark::Json& row : rows_of(sequence, ways, bench)) report.add(row, table());
+    benchmark::run_report(arguments, "OpenCV's RgbdPlane, OctoMap", [&](benchmark::Report& report) {
+        report.print("\n");
+        report.print(table().heading());
+        report.for_each(sequences, [&](const benchmark::SequenceInfo& sequence) {
+            for (const results::Json& row : rows_of(sequence, ways, bench)) report.add(row, table());
+        });
     });
-    report.finish();
     return 0;
 }
 

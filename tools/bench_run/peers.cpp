@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <functional>
 
-#include "bench_segmentation/methods.hpp"
 #include "benchmark/child.hpp"
+#include "benchmark/rgbd_plane.hpp"
 #include "core/histogram.hpp"
 #include "core/trajectory.hpp"
 #include "core/trajectory_file.hpp"
@@ -20,9 +20,10 @@ namespace planemap::bench_run {
 
 namespace {
 
-using benchmark::Json;
+using results::Json;
 
 constexpr std::int64_t kMaxGap_us = 100000;  // between two poses
+constexpr int kStep = 4;                     // RgbdPlane takes every 4th pixel
 
 /// What a method takes a frame, ms of CPU; negative: it did not take this one.
 using Measured = std::function<double(const SensorFrame&, const CameraInfo&)>;
@@ -61,9 +62,9 @@ Json in_child(const std::function<Json()>& work) {
 
 Json measure_rgbd_plane(const std::string& input, int frames, int most) {
     return in_child([&] {
-        bench::Method method({"rgbdplane", 4});
+        const auto finder = benchmark::make_rgbd_plane(benchmark::rgbd_plane_block_px(kStep), false);
         return measure(input, frames, most, [&](const SensorFrame& frame, const CameraInfo& camera) {
-            return method.run(frame.depth, camera);
+            return benchmark::timed_find(*finder, frame.depth, camera, kStep);
         });
     });
 }

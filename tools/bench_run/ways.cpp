@@ -12,7 +12,7 @@ namespace planemap::bench_run {
 
 namespace {
 
-using benchmark::Json;
+using results::Json;
 
 constexpr char kFolder[] = "folder", kLog[] = "log", kWithOctomap[] = "log+octomap",
                kProcesses[] = "processes";
@@ -87,9 +87,9 @@ class Measurement {
                 {"frames", frames},
                 {"frames_per_s", nullptr},
                 {"cpu_s", cpu_ms / 1e3},
-                {"cpu_ms", benchmark::number(each_ms)},
-                {"r", benchmark::number(each_ms / unit_ms)},
-                {"r_ms", benchmark::number(unit_ms)},
+                {"cpu_ms", results::number(each_ms)},
+                {"r", results::number(each_ms / unit_ms)},
+                {"r_ms", results::number(unit_ms)},
                 {"report_cpu_s", nullptr},
                 {"peak_rss_mb", peak_rss_mb}};
     }
@@ -121,19 +121,19 @@ std::vector<Json> rows_of(const benchmark::SequenceInfo& sequence, const std::ve
     return Measurement(sequence, bench).rows(ways);
 }
 
-benchmark::Table table() {
+results::Table table() {
     return {{"sequence", "sequence", -16},
             {"way", "way", -17},
-            benchmark::kBar,
+            results::kBar,
             {"frames", "frames", 6},
             {"frames/s", "frames_per_s", 8, 1},
             {"CPU s", "cpu_s", 7, 1},
             {"report", "report_cpu_s", 6, 1},
-            benchmark::kBar,
+            results::kBar,
             {"ms", "cpu_ms", 7, 2},
             {"R", "r", 6, 2},
             {"R ms", "r_ms", 6, 2},
-            benchmark::kBar,
+            results::kBar,
             {"MB", "peak_rss_mb", 6, 0}};
 }
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "benchmark/sequences.hpp"
-#include "benchmark/table.hpp"
+#include "results/table.hpp"
 
 namespace planemap::bench_run {
 
@@ -33,9 +33,9 @@ struct Bench {
 /// RgbdPlane's CPU time on every 4th pixel of the sequence's depth), "report_cpu_s" (of "cpu_s", the making
 /// of the report) and "peak_rss_mb"; null for what is not known. Throws std::runtime_error naming the program
 /// that failed and why, and benchmark::DataMissing.
-std::vector<benchmark::Json> rows_of(const benchmark::SequenceInfo& sequence,
-                                     const std::vector<WayInfo>& ways, const Bench& bench);
+std::vector<results::Json> rows_of(const benchmark::SequenceInfo& sequence, const std::vector<WayInfo>& ways,
+                                   const Bench& bench);
 
-benchmark::Table table();
+results::Table table();
 
 }  // namespace planemap::bench_run

@@ -116,7 +116,7 @@ void Benchmark::draw(const Sequence& sequence, std::size_t index, const std::str
                      const DepthImage& depth, const segmentation::Segmentation& segmentation) const {
     const std::filesystem::path folder = options_.overlays / benchmark::file_name_of(sequence.name);
     std::filesystem::create_directories(folder);
-    sensor::write_color_png(folder / (benchmark::text("%04zu-", index) + name + ".png"),
+    sensor::write_color_png(folder / (results::text("%04zu-", index) + name + ".png"),
                             draw_overlay(depth, sequence.camera, segmentation));
 }
 

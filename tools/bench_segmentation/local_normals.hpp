@@ -2,12 +2,12 @@
 // What a depth image itself says about surfaces, pixel by pixel, to judge planes by where there is no truth.
 #pragma once
 
-#include "benchmark/readings.hpp"
+#include "evaluate/readings.hpp"
 
 namespace planemap::bench {
 
-using benchmark::for_each_reading;
-using benchmark::is_trusted;
+using evaluation::for_each_reading;
+using evaluation::is_trusted;
 
 /// The unit normal of the surface around each pixel in the depth camera's frame, towards the sensor; zero
 /// where the surface is not locally planar. It is the least-squares plane in inverse depth of the trusted

@@ -78,19 +78,17 @@ int run(const Arguments& arguments) {
     const Benchmark runner(arguments);
     if (!arguments.overlays.empty())
         ResultFolder(arguments.overlays, {});  // an error now, not in two minutes
-    benchmark::Report report(arguments, "PCL " PCL_VERSION_PRETTY
-                                        " compiled with these flags (PCL_NO_PRECOMPILE); ransac-debian: "
-                                        "Debian's build of it; OpenCV " CV_VERSION " as Debian builds it");
-    if (arguments.table1) {
-        print_table1(table1_methods(arguments.methods), report);
-    } else {
+    const std::string peers = "PCL " PCL_VERSION_PRETTY
+                              " compiled with these flags (PCL_NO_PRECOMPILE); ransac-debian: Debian's "
+                              "build of it; OpenCV " CV_VERSION " as Debian builds it";
+    benchmark::run_report(arguments, peers, [&](benchmark::Report& report) {
+        if (arguments.table1) return print_table1(table1_methods(arguments.methods), report);
         report.for_each(sequences, [&](const SequenceInfo& sequence) {
             const std::vector<Row> rows = runner.run(sequence, methods);
             report.print("\n" + sequence.name + ": " + sequence.what + "\n" + table().heading());
             for (const Row& row : rows) report.add(to_json(row), table());
         });
-    }
-    report.finish();
+    });
     return 0;
 }
 

@@ -10,7 +10,7 @@
 #include "bench_segmentation/metrics.hpp"
 #include "bench_segmentation/peers.hpp"
 #include "benchmark/choices.hpp"
-#include "messages/module_status.hpp"
+#include "benchmark/rgbd_plane.hpp"
 #include "segmentation/cells.hpp"
 #include "segmentation/ransac.hpp"
 
@@ -24,7 +24,7 @@ constexpr int kMaxSubsampling = 16;
 enum class Outlines { kNone, kTraced };
 
 /// The project's own interface as a Finder.
-class SegmenterFinder : public Finder {
+class SegmenterFinder : public benchmark::Finder {
   public:
     SegmenterFinder(std::unique_ptr<segmentation::Segmenter> segmenter, Outlines outlines)
         : segmenter_(std::move(segmenter)), outlines_(outlines) {}
@@ -58,7 +58,7 @@ bool is_ransac(const std::string& name) {
     return name.starts_with("ransac");
 }
 
-std::unique_ptr<Finder> make_finder(const MethodName& method) {
+std::unique_ptr<benchmark::Finder> make_finder(const MethodName& method) {
     silence_pcl();
     const int step = method.subsampling;
     const auto ours = [](std::unique_ptr<segmentation::Segmenter> segmenter,
@@ -73,9 +73,9 @@ std::unique_ptr<Finder> make_finder(const MethodName& method) {
     if (method.name == "ransac-debian")
         return ours(make_debian_ransac_segmenter(ransac_options(step), kSeed));
     if (method.name == "organised") return make_organised(std::max(3, 1000 / (step * step)));
-    const int block_px = std::max(4, 40 / step);
-    if (method.name == "rgbdplane") return make_rgbd_plane(block_px, false);
-    if (method.name == "rgbdplane-normals") return make_rgbd_plane(block_px, true);
+    const int block_px = benchmark::rgbd_plane_block_px(step);
+    if (method.name == "rgbdplane") return benchmark::make_rgbd_plane(block_px, false);
+    if (method.name == "rgbdplane-normals") return benchmark::make_rgbd_plane(block_px, true);
     throw std::invalid_argument("no method \"" + method.name + "\"");
 }
 
@@ -124,31 +124,6 @@ std::vector<MethodName> parse_methods(const std::string& list) {
     return methods;
 }
 
-DepthImage decimated(const DepthImage& depth, int step) {
-    DepthImage out((depth.width + step - 1) / step, (depth.height + step - 1) / step);
-    for (int v = 0; v < out.height; ++v) {
-        const std::uint16_t* from = depth.row(v * step);
-        std::uint16_t* to = out.row(v);
-        for (int u = 0; u < out.width; ++u) to[u] = from[static_cast<std::ptrdiff_t>(u) * step];
-    }
-    return out;
-}
-
-CameraInfo decimated(const CameraInfo& camera, int step) {
-    const auto scaled = [&](const PinholeCamera& c) {
-        return PinholeCamera{(c.width + step - 1) / step,
-                             (c.height + step - 1) / step,
-                             c.fx / step,
-                             c.fy / step,
-                             c.cx / step,
-                             c.cy / step};
-    };
-    CameraInfo out = camera;
-    out.depth = scaled(camera.depth);
-    out.color = scaled(camera.color);
-    return out;
-}
-
 Image<std::uint16_t> spread(const Image<std::uint16_t>& labels, const std::vector<PlanarRegion>& regions,
                             const DepthImage& depth, const CameraInfo& camera, int step) {
     Image<std::uint16_t> out(depth.width, depth.height);
@@ -169,13 +144,7 @@ Method::Method(const MethodName& name)
     : finder_(make_finder(name)), step_(is_ransac(name.name) ? 1 : name.subsampling) {}
 
 double Method::run(const DepthImage& depth, const CameraInfo& camera) {
-    const double start = messages::thread_cpu_ms();
-    if (step_ == 1) {
-        finder_->find(depth, camera);
-    } else {
-        finder_->find(decimated(depth, step_), decimated(camera, step_));
-    }
-    return messages::thread_cpu_ms() - start;
+    return benchmark::timed_find(*finder_, depth, camera, step_);
 }
 
 const segmentation::Segmentation& Method::result(const DepthImage& depth, const CameraInfo& camera) {

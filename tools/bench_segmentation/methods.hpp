@@ -6,21 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "segmentation/segmenter.hpp"
+#include "benchmark/plane_finder.hpp"
 
 namespace planemap::bench {
-
-/// Finds planes in two steps, so that only the first is timed.
-class Finder {
-  public:
-    virtual ~Finder() = default;
-    /// All the work a user of the method has to wait for: from the depth image to planes and labels in the
-    /// method's own form.
-    virtual void find(const DepthImage& depth, const CameraInfo& camera) = 0;
-    /// The planes and labels of the last find() in ours. Of the regions only `plane` and what the method
-    /// itself gives are set.
-    virtual void result(segmentation::Segmentation& out) = 0;
-};
 
 /// A method at one subsampling.
 struct MethodName {
@@ -45,11 +33,6 @@ bool is_slow(const MethodName& method);
 /// std::invalid_argument that names what is wrong and lists what there is.
 std::vector<MethodName> parse_methods(const std::string& list);
 
-/// Every step-th pixel of every step-th row, and the camera that sees them; its colour camera is scaled
-/// alike, so that depth can still be registered to it. Precondition: step >= 1.
-DepthImage decimated(const DepthImage& depth, int step);
-CameraInfo decimated(const CameraInfo& camera, int step);
-
 /// Labels of a decimated image spread to the full one: each pixel takes the label of the nearest sample where
 /// its reading is trusted and lies within tolerance() of that label's plane.
 Image<std::uint16_t> spread(const Image<std::uint16_t>& labels, const std::vector<PlanarRegion>& regions,
@@ -66,7 +49,7 @@ class Method {
     const segmentation::Segmentation& result(const DepthImage& depth, const CameraInfo& camera);
 
   private:
-    std::unique_ptr<Finder> finder_;
+    std::unique_ptr<benchmark::Finder> finder_;
     int step_ = 1;  // of our decimation; 1 where the method itself subsamples
     segmentation::Segmentation segmentation_;
 };

@@ -8,7 +8,6 @@
 
 #include "bench_segmentation/local_normals.hpp"
 #include "core/angle.hpp"
-#include "evaluate/statistics.hpp"
 
 namespace planemap::bench {
 
@@ -30,7 +29,7 @@ FrameScore& FrameScore::operator+=(const FrameScore& o) {
 }
 
 double FrameScore::rms() const {
-    return std::sqrt(share(squared_distance, labelled));
+    return std::sqrt(share(squared_distance, labelled).value_or(0));
 }
 
 FrameScore score_frame(const DepthImage& depth, const CameraInfo& camera,

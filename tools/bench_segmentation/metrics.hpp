@@ -2,6 +2,7 @@
 // How well a segmentation describes its depth image; no truth needed.
 #pragma once
 
+#include "evaluate/statistics.hpp"
 #include "segmentation/segmenter.hpp"
 
 namespace planemap::bench {
@@ -23,16 +24,13 @@ struct FrameScore {
     double planes = 0, frames = 0;
 
     FrameScore& operator+=(const FrameScore& o);
-    double explained() const { return share(explained_pixels, readings); }
-    double coherent() const { return share(coherent_pixels, planar); }
-    double off30() const { return share(off30_pixels, labelled); }
+    // 0 for a part of nothing.
+    double explained() const { return share(explained_pixels, readings).value_or(0); }
+    double coherent() const { return share(coherent_pixels, planar).value_or(0); }
+    double off30() const { return share(off30_pixels, labelled).value_or(0); }
     /// Of the labelled pixels to their planes, metres.
     double rms() const;
-    double planes_a_frame() const { return share(planes, frames); }
-
-  private:
-    /// 0 for a part of nothing.
-    static double share(double part, double whole) { return whole > 0 ? part / whole : 0; }
+    double planes_a_frame() const { return share(planes, frames).value_or(0); }
 };
 
 /// Scores one frame. Distances are of points to planes, orthogonal. Every region counts as a plane, whatever

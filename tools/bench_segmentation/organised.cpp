@@ -19,7 +19,7 @@ namespace planemap::bench {
 
 namespace {
 
-class OrganisedFinder : public Finder {
+class OrganisedFinder : public benchmark::Finder {
   public:
     explicit OrganisedFinder(int min_inliers) {
         normals_.setNormalEstimationMethod(normals_.AVERAGE_3D_GRADIENT);
@@ -82,7 +82,7 @@ class OrganisedFinder : public Finder {
 
 }  // namespace
 
-std::unique_ptr<Finder> make_organised(int min_inliers) {
+std::unique_ptr<benchmark::Finder> make_organised(int min_inliers) {
     return std::make_unique<OrganisedFinder>(min_inliers);
 }
 

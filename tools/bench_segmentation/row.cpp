@@ -38,7 +38,7 @@ void add_sightings(const DepthImage& depth, const CameraInfo& camera, const Pose
 }
 
 Json known_if(bool is_known, double value) {
-    return is_known ? benchmark::number(value) : Json(nullptr);
+    return is_known ? results::number(value) : Json(nullptr);
 }
 
 }  // namespace
@@ -57,33 +57,33 @@ void Row::add(std::optional<double> frame_ms, const BenchFrame& frame, const Cam
     }
 }
 
-const benchmark::Table& table() {
-    using benchmark::kBar;
-    using benchmark::milli;
-    using benchmark::percent;
-    static const benchmark::Table kTable{{"method", "method", -19},
-                                         {"sub", "subsampling", 3},
-                                         {"frames", "frames", 6},
-                                         {"ms", "median_ms", 8, 3},
-                                         {"p95", "p95_ms", 8, 3},
-                                         {"planes", "planes", 7, 1},
-                                         {"expl%", "explained", 6, 1, percent},
-                                         {"coh%", "coherent", 6, 1, percent},
-                                         {"off30%", "off30", 7, 2, percent},
-                                         {"rms mm", "rms_m", 7, 2, milli},
-                                         kBar,
-                                         {"rec%", "recall", 5, 1, percent},
-                                         {"prec%", "precision", 6, 1, percent},
-                                         {"corr", "correct", 5},
-                                         {"over", "over_segmented", 5},
-                                         {"under", "under_segmented", 5},
-                                         {"miss", "missed", 5},
-                                         {"noise", "noise", 5},
-                                         {"deg", "angle_median_deg", 6, 3},
-                                         {"mm", "distance_median_m", 6, 2, milli},
-                                         kBar,
-                                         {"spread deg", "spread_angle_deg", 10, 3},
-                                         {"mm", "spread_distance_m", 5, 1, milli}};
+const results::Table& table() {
+    using results::kBar;
+    using results::milli;
+    using results::percent;
+    static const results::Table kTable{{"method", "method", -19},
+                                       {"sub", "subsampling", 3},
+                                       {"frames", "frames", 6},
+                                       {"ms", "median_ms", 8, 3},
+                                       {"p95", "p95_ms", 8, 3},
+                                       {"planes", "planes", 7, 1},
+                                       {"expl%", "explained", 6, 1, percent},
+                                       {"coh%", "coherent", 6, 1, percent},
+                                       {"off30%", "off30", 7, 2, percent},
+                                       {"rms mm", "rms_m", 7, 2, milli},
+                                       kBar,
+                                       {"rec%", "recall", 5, 1, percent},
+                                       {"prec%", "precision", 6, 1, percent},
+                                       {"corr", "correct", 5},
+                                       {"over", "over_segmented", 5},
+                                       {"under", "under_segmented", 5},
+                                       {"miss", "missed", 5},
+                                       {"noise", "noise", 5},
+                                       {"deg", "angle_median_deg", 6, 3},
+                                       {"mm", "distance_median_m", 6, 2, milli},
+                                       kBar,
+                                       {"spread deg", "spread_angle_deg", 10, 3},
+                                       {"mm", "spread_distance_m", 5, 1, milli}};
     return kTable;
 }
 
@@ -98,9 +98,9 @@ Json to_json(const Row& row) {
         {"method", row.method.name},
         {"subsampling", row.method.subsampling},
         {"frames", static_cast<int>(s.frames)},
-        {"median_ms", benchmark::number(median(row.ms))},
-        {"p95_ms", benchmark::number(percentile_95(row.ms))},
-        {"max_ms", benchmark::number(row.ms.empty() ? NAN : *std::max_element(row.ms.begin(), row.ms.end()))},
+        {"median_ms", results::number(median(row.ms))},
+        {"p95_ms", results::number(percentile_95(row.ms))},
+        {"max_ms", results::number(row.ms.empty() ? NAN : *std::max_element(row.ms.begin(), row.ms.end()))},
         {"planes", s.planes_a_frame()},
         {"explained", s.explained()},
         {"coherent", s.coherent()},

@@ -9,11 +9,11 @@
 #include "bench_segmentation/methods.hpp"
 #include "bench_segmentation/metrics.hpp"
 #include "bench_segmentation/sequences.hpp"
-#include "benchmark/table.hpp"
+#include "results/table.hpp"
 
 namespace planemap::bench {
 
-using benchmark::Json;
+using results::Json;
 
 /// What a method did on a sequence so far.
 struct Row {
@@ -34,6 +34,6 @@ struct Row {
 Json to_json(const Row& row);
 
 /// What people see of a row's JSON.
-const benchmark::Table& table();
+const results::Table& table();
 
 }  // namespace planemap::bench

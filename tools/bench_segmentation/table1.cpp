@@ -73,7 +73,7 @@ Json to_json(const Table1Row& row) {
             {"subsampling", row.method.subsampling},
             {"runtime_s", row.seconds},
             {"inliers", row.inliers},
-            {"estimated_distance_m", benchmark::number(row.estimated_distance_m)},
+            {"estimated_distance_m", results::number(row.estimated_distance_m)},
             {"false_planes", row.false_planes}};
 }
 
@@ -114,11 +114,10 @@ Table1Row measure_table1(const MethodName& name, double distance_m, const std::v
 }
 
 void print_table1(const std::vector<MethodName>& methods, benchmark::Report& report) {
-    const benchmark::Table table{
-        {"method", "method", -19},      {"real m", "distance_m", 8, 1},
-        {"sub", "subsampling", 4},      {"runtime s", "runtime_s", 12, 5},
-        {"inliers", "inliers", 9},      {"estimate m", "estimated_distance_m", 10, 3},
-        {"false", "false_planes", 8, 1}};
+    const results::Table table{{"method", "method", -19},      {"real m", "distance_m", 8, 1},
+                               {"sub", "subsampling", 4},      {"runtime s", "runtime_s", 12, 5},
+                               {"inliers", "inliers", 9},      {"estimate m", "estimated_distance_m", 10, 3},
+                               {"false", "false_planes", 8, 1}};
     report.print(
         "\nTable 1 of the paper: a wall in front of a rendered Kinect, a box and the floor in view; " +
         std::to_string(kFrames) +

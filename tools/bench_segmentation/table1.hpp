@@ -11,7 +11,7 @@
 
 namespace planemap::bench {
 
-using benchmark::Json;
+using results::Json;
 
 /// One row: a method at one distance, the median over all frames (false planes: the mean).
 struct Table1Row {

@@ -11,7 +11,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "bench_map/growth.hpp"
+#include "benchmark/rounds.hpp"
 #include "core/processor_time.hpp"
 #include "messages/channels.hpp"
 #include "messages/convert.hpp"
@@ -141,7 +141,7 @@ class Observer {
 
 Round render_round(const std::string& simulator_name, const std::filesystem::path& folder) {
     simulator::SimulatorOptions options = simulator::parse_simulator_name(simulator_name);
-    options.frames = static_cast<int>(bench_map::frames_a_round(simulator_name));
+    options.frames = static_cast<int>(benchmark::frames_a_round(simulator_name));
     auto source = std::make_unique<simulator::SimulatedSource>(options);
     Round round{folder / "round.lcmlog", {}};
     for (int i = 0; i < options.frames; ++i)
@@ -153,6 +153,7 @@ Round render_round(const std::string& simulator_name, const std::filesystem::pat
 }
 
 std::vector<Json> soak(const Round& round, const SoakOptions& options,
+                       const std::function<void(std::int64_t)>& on_frame,
                        const std::function<bool(const Json&)>& on_point) {
     if (options.frames < 1 || options.every < 1 || !(options.period_s >= 0.001 && options.period_s <= 3600))
         throw std::invalid_argument("frames and every must be at least 1, the period 0.001 to 3600 s");
@@ -168,6 +169,7 @@ std::vector<Json> soak(const Round& round, const SoakOptions& options,
         const std::size_t frame = feed.next(bus);
         pipeline.settle();
         observer.see(frame);
+        on_frame(frames);
         if (frames % options.every != 0 && frames != options.frames) continue;
         points.push_back(observer.point());
         if (!on_point(points.back())) break;
@@ -177,30 +179,36 @@ std::vector<Json> soak(const Round& round, const SoakOptions& options,
 
 std::optional<double> growth(const std::vector<Json>& points, double period_s) {
     const auto half_hour = std::find_if(points.begin(), points.end(), [&](const Json& point) {
-        return benchmark::figure(point, "frames") * period_s >= kHalfHour_s;
+        return results::figure(point, "frames") * period_s >= kHalfHour_s;
     });
     if (half_hour == points.end() || half_hour + 1 == points.end()) return std::nullopt;
-    return benchmark::figure(points.back(), "rss_mb") / benchmark::figure(*half_hour, "rss_mb") - 1;
+    return results::figure(points.back(), "rss_mb") / results::figure(*half_hour, "rss_mb") - 1;
 }
 
-const benchmark::Table& table() {
-    using benchmark::kBar;
-    static const benchmark::Table kTable{{"frames", "frames", 8},
-                                         {"lost", "lost", 6},
-                                         kBar,
-                                         {"keyframes", "keyframes_made", 9},
-                                         {"graph", "keyframes_graph", 8},
-                                         {"map", "keyframes_map", 6},
-                                         {"closures", "loop_closures", 9},
-                                         {"planes", "planes", 6},
-                                         kBar,
-                                         {"RSS MB", "rss_mb", 7, 1},
-                                         {"heap MB", "heap_mb", 7, 2},
-                                         {"graph MB", "graph_mb", 8, 2},
-                                         {"map MB", "map_mb", 7, 2},
-                                         kBar,
-                                         {"CPU ms", "cpu_ms", 6, 2},
-                                         {"off m", "off_m", 7, 4}};
+Json to_json(const std::string& sequence, const std::vector<Json>& points, double period_s) {
+    Json json{{"sequence", sequence}, {"period_s", period_s}, {"points", points}};
+    json["memory_growth"] = results::known(growth(points, period_s), [](double share) { return share; });
+    return json;
+}
+
+const results::Table& table() {
+    using results::kBar;
+    static const results::Table kTable{{"frames", "frames", 8},
+                                       {"lost", "lost", 6},
+                                       kBar,
+                                       {"keyframes", "keyframes_made", 9},
+                                       {"graph", "keyframes_graph", 8},
+                                       {"map", "keyframes_map", 6},
+                                       {"closures", "loop_closures", 9},
+                                       {"planes", "planes", 6},
+                                       kBar,
+                                       {"RSS MB", "rss_mb", 7, 1},
+                                       {"heap MB", "heap_mb", 7, 2},
+                                       {"graph MB", "graph_mb", 8, 2},
+                                       {"map MB", "map_mb", 7, 2},
+                                       kBar,
+                                       {"CPU ms", "cpu_ms", 6, 2},
+                                       {"off m", "off_m", 7, 4}};
     return kTable;
 }
 

@@ -9,13 +9,13 @@
 #include <string>
 #include <vector>
 
-#include "benchmark/table.hpp"
 #include "core/trajectory.hpp"
 #include "pipeline/pipeline.hpp"
+#include "results/table.hpp"
 
 namespace planemap::bench_soak {
 
-using benchmark::Json;
+using results::Json;
 
 /// One round of a walk, rendered, that ends where it began.
 struct Round {
@@ -38,15 +38,19 @@ struct SoakOptions {
 /// frames and lost ones, keyframes that the odometry made and that graph and map keep, loop closures accepted
 /// so far, planes, MB of the process in memory (rss_mb) and allocated (heap_mb), of graph and map; since the
 /// last point CPU ms a frame, and the largest error of a pose in the world from the first pose on (off_m).
-/// Ends early when `on_point` returns false.
+/// Calls `on_frame` with the frames so far. Ends early when `on_point` returns false.
 std::vector<Json> soak(const Round& round, const SoakOptions& options,
+                       const std::function<void(std::int64_t frames)>& on_frame,
                        const std::function<bool(const Json&)>& on_point);
 
 /// Growth of the process's memory from the first half hour (by the stamps) to the end, a share; nothing when
 /// the run is not longer than that.
 std::optional<double> growth(const std::vector<Json>& points, double period_s);
 
+/// A walk as a row: "sequence", "period_s", "points" and "memory_growth", see growth(); null for none.
+Json to_json(const std::string& sequence, const std::vector<Json>& points, double period_s);
+
 /// What people see of a point.
-const benchmark::Table& table();
+const results::Table& table();
 
 }  // namespace planemap::bench_soak

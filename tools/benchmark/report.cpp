@@ -38,4 +38,14 @@ void Report::finish() {
     output_.finish(Json(rows_).dump(1) + "\n");
 }
 
+void run_report(const Options& options, const std::string& peers,
+                const std::function<void(Report&)>& measure) {
+    FieldErrors errors("benchmark options");
+    options.check(errors);
+    errors.throw_if_any();
+    Report report(options, peers);
+    measure(report);
+    report.finish();
+}
+
 }  // namespace planemap::benchmark

@@ -5,10 +5,13 @@
 
 #include "benchmark/program.hpp"
 #include "benchmark/sequences.hpp"
-#include "benchmark/table.hpp"
 #include "results/output_file.hpp"
+#include "results/table.hpp"
 
 namespace planemap::benchmark {
+
+using results::Json;
+using results::Table;
 
 /// What a benchmark says: tables for people on standard output (on stderr where --json has that), and all
 /// rows as JSON in the file of --json.
@@ -36,5 +39,10 @@ class Report {
     OutputFile output_;
     std::vector<Json> rows_;
 };
+
+/// A benchmark once it knows what to measure: checks the options, begins a report, has `measure` fill it, and
+/// ends it. Throws std::invalid_argument that names every wrong option, and as Report does.
+void run_report(const Options& options, const std::string& peers,
+                const std::function<void(Report&)>& measure);
 
 }  // namespace planemap::benchmark

@@ -8,8 +8,8 @@ namespace planemap::evaluation {
 
 namespace {
 
-using benchmark::known;
-using benchmark::text;
+using results::known;
+using results::text;
 
 constexpr std::size_t kWorstPairs = 5;
 
@@ -106,14 +106,14 @@ Json figures_of(const std::optional<Judgement>& judged) {
     json["split"] = known(judged, [](const Judgement& j) { return j.split(); });
     json["spurious"] = known(judged, [](const Judgement& j) { return j.spurious.size(); });
     add_errors(judged ? &*judged : nullptr, json);
-    json["outline_iou"] = benchmark::number(judged ? judged->outline_iou().value_or(NAN) : NAN);
-    json["outline_iou_worst"] = benchmark::number(worst != nullptr ? worst->iou : NAN);
+    json["outline_iou"] = results::number(judged ? judged->outline_iou().value_or(NAN) : NAN);
+    json["outline_iou_worst"] = results::number(worst != nullptr ? worst->iou : NAN);
     return json;
 }
 
 Json edge_figures(const std::optional<EdgeJudgement>& edges) {
     const auto share = [&](std::optional<double> (EdgeJudgement::*of)() const) {
-        return benchmark::number(edges ? (*edges.*of)().value_or(NAN) : NAN);
+        return results::number(edges ? (*edges.*of)().value_or(NAN) : NAN);
     };
     Json json;
     json["edges_true_m"] = known(edges, [](const EdgeJudgement& e) { return e.true_m; });
@@ -128,7 +128,7 @@ Json edge_figures(const std::optional<EdgeJudgement>& edges) {
 Json inferred_figures(const std::optional<InferredJudgement>& inferred) {
     Json json;
     json["inferred_m2"] = known(inferred, [](const InferredJudgement& i) { return i.area_m2; });
-    json["inferred_right"] = benchmark::number(inferred ? inferred->right().value_or(NAN) : NAN);
+    json["inferred_right"] = results::number(inferred ? inferred->right().value_or(NAN) : NAN);
     return json;
 }
 

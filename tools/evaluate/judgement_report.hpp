@@ -6,15 +6,15 @@
 #include <string>
 #include <vector>
 
-#include "benchmark/table.hpp"
 #include "evaluate/edge_judge.hpp"
 #include "evaluate/inferred_judge.hpp"
 #include "evaluate/plane_judge.hpp"
 #include "evaluate/statistics.hpp"
+#include "results/table.hpp"
 
 namespace planemap::evaluation {
 
-using benchmark::Json;
+using results::Json;
 
 /// Errors over pairs of planes, metres or degrees; those of distances also in percent of the true distance.
 Statistics errors_of(const std::vector<PairMeasure>& pairs);

@@ -12,6 +12,7 @@
 #include "core/trajectory_file.hpp"
 #include "evaluate/edge_judge.hpp"
 #include "evaluate/evaluation.hpp"
+#include "evaluate/evaluation_report.hpp"
 #include "evaluate/judgement_report.hpp"
 #include "evaluate/true_planes.hpp"
 #include "map/map_file.hpp"
@@ -67,34 +68,6 @@ std::string too_few_pairs(const Arguments& arguments, const Trajectory& truth, c
     }
     return "only " + std::to_string(pairs) + " poses of " + arguments.estimate_file + " match poses of " +
            arguments.truth_file + " in time, at least 3 are needed (see --offset and --max-difference)";
-}
-
-nlohmann::ordered_json to_json(const Statistics& s) {
-    return {{"rmse", s.rmse}, {"mean", s.mean}, {"median", s.median},
-            {"std", s.std},   {"min", s.min},   {"max", s.max}};
-}
-
-nlohmann::ordered_json to_json(const std::optional<RelativeError>& error) {
-    if (!error) return nullptr;
-    return {{"pairs", error->metres.count},
-            {"left_out", error->left_out},
-            {"trans", to_json(error->metres)},
-            {"rot_deg", to_json(error->degrees)}};
-}
-
-nlohmann::ordered_json to_json(const Evaluation& evaluation) {
-    nlohmann::ordered_json json = {{"truth_poses", evaluation.truth_poses},
-                                   {"estimate_poses", evaluation.estimate_poses},
-                                   {"pairs", evaluation.pairs},
-                                   {"matched_share", evaluation.matched_share},
-                                   {"path_length_m", evaluation.path_length_m},
-                                   {"scale", evaluation.ate->scale},
-                                   {"ate", to_json(evaluation.ate->metres)},
-                                   {"rpe_frame", to_json(evaluation.rpe_frame)},
-                                   {"rpe_1s", to_json(evaluation.rpe_1s)}};
-    if (!evaluation.rpe_frame) json["rpe_frame_why"] = evaluation.why_no_rpe_frame;
-    if (!evaluation.rpe_1s) json["rpe_1s_why"] = evaluation.why_no_rpe_1s;
-    return json;
 }
 
 void print_row(const std::string& name, const char* unit, const Statistics& s) {
@@ -230,7 +203,7 @@ void add_delta(const Arguments& arguments, const Pair& pair, bool as_text, nlohm
     char name[40];
     std::snprintf(name, sizeof(name), "RPE per %g %s", delta.value, arguments.delta_unit.c_str());
     if (as_text) print_rows(name, error, why);
-    json["rpe_delta"] = to_json(error);
+    json["rpe_delta"] = evaluation::relative_figures(error);
     if (!error) json["rpe_delta_why"] = why;
     json["delta"] = delta.value;
     json["delta_unit"] = arguments.delta_unit;
@@ -263,7 +236,7 @@ void run(Arguments arguments) {
     const Evaluation evaluation = evaluated(arguments, pair);
     const auto judgement = judged_map(arguments.truth_file, folder, evaluation.ate->truth_from_estimate);
 
-    nlohmann::ordered_json json = to_json(evaluation);
+    nlohmann::ordered_json json = evaluation::all_figures(evaluation);
     json["truth_format"] = format_name(pair.truth.format);
     json["estimate_format"] = format_name(pair.estimate.format);
     json["matched_by"] = pair.by_index ? "index" : "time";

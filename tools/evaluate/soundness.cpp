@@ -174,9 +174,10 @@ class Readings {
     std::map<int, Range> by_range_;  ///< by the metre
 };
 
-/// Looks at a plane's cells in all views.
-void look_through(const MapFace& face, const std::vector<PosedView>& views, const SoundnessLimits& limits,
-                  PlaneSoundness& verdict) {
+/// Free space: which of a plane's cells the views see, which of these they have seen through to something
+/// behind, and which they have a reading of.
+void check_free_space(const MapFace& face, const std::vector<PosedView>& views, const SoundnessLimits& limits,
+                      PlaneSoundness& verdict) {
     struct Looks {
         std::uint16_t seen = 0, behind = 0, on_it = 0;
     };
@@ -267,7 +268,7 @@ Soundness soundness(const PlaneMap& map, const std::vector<PosedView>& views, co
         PlaneSoundness& verdict = result.planes.emplace_back();
         verdict.id = map.planes[i].id;
         verdict.area_m2 = faces[i].raster.area();
-        look_through(faces[i], views, limits, verdict);
+        check_free_space(faces[i], views, limits, verdict);
         result.area_m2 += verdict.area_m2;
         result.seen_m2 += verdict.seen_m2;
         result.floating_m2 += verdict.floating_m2;

@@ -3,15 +3,15 @@
 
 #include <nlohmann/json.hpp>
 
-#include "benchmark/table.hpp"
 #include "evaluate/statistics.hpp"
+#include "results/table.hpp"
 
 namespace planemap::evaluation {
 
 namespace {
 
-using benchmark::Json;
-using benchmark::text;
+using results::Json;
+using results::text;
 
 Json figure(const std::optional<double>& value) {
     return value ? Json(*value) : Json(nullptr);
@@ -62,8 +62,8 @@ Json soundness_figures(const Soundness& soundness) {
             {"explained_points_5cm", figure(soundness.counts.share_of(&ReadingCounts::near))},
             {"point_to_plane_rms_m", measured ? Json(soundness.residuals.rms_m) : Json(nullptr)},
             {"point_to_plane_bias_m", measured ? Json(soundness.residuals.mean_m) : Json(nullptr)},
-            {"outline_to_line_median_m", benchmark::number(nearest_rank(soundness.outline_gaps, 0.5))},
-            {"outline_to_line_p90_m", benchmark::number(nearest_rank(soundness.outline_gaps, 0.9))},
+            {"outline_to_line_median_m", results::number(nearest_rank(soundness.outline_gaps, 0.5))},
+            {"outline_to_line_p90_m", results::number(nearest_rank(soundness.outline_gaps, 0.9))},
             {"soundness",
              {{"views", soundness.views},
               {"readings", soundness.counts.readings},

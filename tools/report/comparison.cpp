@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "report/comparison.hpp"
 
-#include <numbers>
-
+#include "core/angle.hpp"
+#include "evaluate/plane_matching.hpp"
 #include "report/figures.hpp"
-#include "report/plane_matching.hpp"
 #include "report/world_frames.hpp"
 
 namespace planemap {
@@ -64,13 +63,13 @@ Json plane_json(const PlaneMap& map, int id) {
     return {{"id", id}, {"label", label_name(plane->label)}, {"area", plane->area}};
 }
 
-Json planes_json(const PlaneMap& a, const PlaneMap& b, const PlaneMatches& matches) {
+Json planes_json(const PlaneMap& a, const PlaneMap& b, const evaluation::PlaneMatches& matches) {
     Json in_place = Json::array(), moved = Json::array(), appeared = Json::array(), gone = Json::array();
-    for (const PlaneMatch& pair : matches.pairs) {
+    for (const evaluation::PlaneMatch& pair : matches.pairs) {
         Json entry{{"a", plane_json(a, pair.a)},
                    {"b", plane_json(b, pair.b)},
                    {"offset_m", pair.offset_m},
-                   {"angle_deg", pair.angle * 180 / std::numbers::pi}};
+                   {"angle_deg", degrees(pair.angle)}};
         (pair.is_in_place() ? in_place : moved).push_back(std::move(entry));
     }
     for (const int id : matches.only_a) gone.push_back(plane_json(a, id));
@@ -90,7 +89,7 @@ void add_planes(const Subject& a, const Subject& b, Json& comparison) {
         comparison["world_frames"]["why"] = (map_a ? b : a).path.string() + " holds no plane_map.lcmlog";
         return;
     }
-    const PlaneMatches matches = match_planes(*map_a, *map_b);
+    const evaluation::PlaneMatches matches = evaluation::match_planes(*map_a, *map_b);
     const WorldFrames frames = compare_world_frames(*map_a, a.trajectory(), *map_b, b.trajectory(), matches);
     comparison["world_frames"] = {{"are_one", frames.are_one}, {"why", frames.why}};
     if (frames.are_one) comparison["planes"] = planes_json(*map_a, *map_b, matches);

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "core/plane_map.hpp"
-#include "report/page.hpp"
+#include "report_page/page.hpp"
 
 namespace planemap {
 

@@ -4,8 +4,9 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "core/angle.hpp"
+#include "evaluate/statistics.hpp"
 #include "run/report_text.hpp"
 
 namespace planemap {
@@ -18,7 +19,7 @@ constexpr double kLeastArea = 0.5;
 constexpr double kLeastSpread = 0.02;  ///< of the normals' smallest direction, as a share of area
 
 struct PoseDifference {
-    double metres = 0, degrees = 0;
+    double metres = 0, angle_deg = 0;
 };
 
 /// Of the poses that both have for the same microsecond.
@@ -33,17 +34,10 @@ std::vector<PoseDifference> differences(const Trajectory& a, const Trajectory& b
             const Pose a_from_b = a[i++].world_from_camera * b[k++].world_from_camera.inverse();
             const Eigen::Vector3d apart =
                 a[i - 1].world_from_camera.translation() - b[k - 1].world_from_camera.translation();
-            all.push_back(
-                {apart.norm(), Eigen::AngleAxisd(a_from_b.linear()).angle() * 180 / std::numbers::pi});
+            all.push_back({apart.norm(), degrees(rotation_angle(a_from_b))});
         }
     }
     return all;
-}
-
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
 }
 
 double area_of(const PlaneMap& map) {
@@ -52,10 +46,10 @@ double area_of(const PlaneMap& map) {
     return area;
 }
 
-WorldFrames by_planes(const PlaneMap& map_a, const PlaneMap& map_b, const PlaneMatches& matches) {
+WorldFrames by_planes(const PlaneMap& map_a, const PlaneMap& map_b, const evaluation::PlaneMatches& matches) {
     double in_place = 0;
     Eigen::Matrix3d directions = Eigen::Matrix3d::Zero();
-    for (const PlaneMatch& pair : matches.pairs) {
+    for (const evaluation::PlaneMatch& pair : matches.pairs) {
         const MapPlane *a = map_a.find(pair.a), *b = map_b.find(pair.b);
         if (a == nullptr || b == nullptr || !pair.is_in_place()) continue;
         const double area = static_cast<double>(std::min(a->area, b->area));
@@ -78,15 +72,15 @@ WorldFrames by_planes(const PlaneMap& map_a, const PlaneMap& map_b, const PlaneM
 }  // namespace
 
 WorldFrames compare_world_frames(const PlaneMap& map_a, const Trajectory& a, const PlaneMap& map_b,
-                                 const Trajectory& b, const PlaneMatches& matches) {
+                                 const Trajectory& b, const evaluation::PlaneMatches& matches) {
     const std::vector<PoseDifference> shared = differences(a, b);
     if (shared.size() < kFewestPoses) return by_planes(map_a, map_b, matches);
-    std::vector<double> metres, degrees;
+    std::vector<double> metres, angles_deg;
     for (const PoseDifference& difference : shared) {
         metres.push_back(difference.metres);
-        degrees.push_back(difference.degrees);
+        angles_deg.push_back(difference.angle_deg);
     }
-    const double apart = median(metres), turned = median(degrees);
+    const double apart = statistics(metres).median, turned = statistics(angles_deg).median;
     return {apart <= kMostApart_m && turned <= kMostTurned_deg,
             std::to_string(shared.size()) + " poses of the same moments are " + format("%.3f m", apart) +
                 " and " + format("%.2f deg", turned) + " apart (medians)"};

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "core/trajectory.hpp"
-#include "report/plane_matching.hpp"
+#include "evaluate/plane_matching.hpp"
 
 namespace planemap {
 
@@ -18,6 +18,6 @@ struct WorldFrames {
 /// 3 deg of each other (medians). Else by the planes: of one frame, half of the smaller map's area matches in
 /// place, in three directions. What cannot be told counts as two frames.
 WorldFrames compare_world_frames(const PlaneMap& map_a, const Trajectory& a, const PlaneMap& map_b,
-                                 const Trajectory& b, const PlaneMatches& matches);
+                                 const Trajectory& b, const evaluation::PlaneMatches& matches);
 
 }  // namespace planemap

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "evaluate/evaluation.hpp"
+#include "evaluate/evaluation_report.hpp"
 #include "pipeline/pipeline.hpp"
 #include "run/input.hpp"
 
@@ -23,20 +23,7 @@ void add_errors(const Trajectory& truth, const Trajectory& estimate, Json& repor
                                   " poses match the truth beside the input in time, at least 3 are needed";
         return;
     }
-    Json accuracy = {{"ate_rmse_m", evaluation.ate->metres.rmse},
-                     {"rpe_frame_rmse_m", nullptr},
-                     {"rpe_frame_rmse_deg", nullptr},
-                     {"scale", evaluation.ate->scale},
-                     {"pairs", evaluation.pairs},
-                     {"path_length_m", evaluation.path_length_m},
-                     {"extent_m", evaluation.extent_m}};
-    if (evaluation.rpe_frame) {
-        accuracy["rpe_frame_rmse_m"] = evaluation.rpe_frame->metres.rmse;
-        accuracy["rpe_frame_rmse_deg"] = evaluation.rpe_frame->degrees.rmse;
-    } else {
-        accuracy["rpe_frame_why"] = evaluation.why_no_rpe_frame;
-    }
-    report["accuracy"] = accuracy;
+    report["accuracy"] = evaluation::accuracy_figures(evaluation);
 }
 
 }  // namespace

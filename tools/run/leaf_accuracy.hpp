@@ -56,7 +56,6 @@ class LeafAccuracy {
     explicit LeafAccuracy(const ::octomap::OcTree* tree);
 
     void add(const evaluation::JudgedReading& reading);
-    const Distances& to_planes() const { return to_planes_; }
     std::vector<LeafRow> rows() const;
     /// "readings", "planes", "leaves", "octomap" (null without a tree) and "equal_resolution_m"; null for
     /// what there are no readings for.

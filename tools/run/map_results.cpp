@@ -6,7 +6,7 @@
 #include "core/components.hpp"
 #include "core/files.hpp"
 #include "map/map_file.hpp"
-#include "report/page.hpp"
+#include "report_page/page.hpp"
 #include "run/report.hpp"
 
 namespace planemap {
