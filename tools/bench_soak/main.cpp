@@ -12,7 +12,7 @@ constexpr double kMostGrowth = 0.1;
 constexpr int kADay = 86400;  // frames, a second apart
 
 struct Arguments : benchmark::Options {
-    bool simulated = false;  // what tools/soak is called with; there is no other way yet
+    bool simulated = false;  // what tools/soak is called with
     SoakOptions soak;
 };
 
@@ -34,6 +34,7 @@ void add_flags(messages::Flags& flags, Arguments& arguments) {
     pipeline::PipelineOptions& pipeline = arguments.soak.pipeline;
     benchmark::add_flags(flags, arguments, "frames in all; 0: a day of them, 86,400");
     flags.add("simulated", arguments.simulated, "walk through the simulator: as without");
+    flags.add("world", arguments.sequences, "the same as --sequences");
     flags.add("every", arguments.soak.every, "frames a line");
     flags.add("period-s", arguments.soak.period_s, "seconds between the stamps of two frames");
     flags.add("octomap", pipeline.with_octomap, "build the OctoMap to compare with, too");
