@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "map/hand_over.hpp"
 #include "map/rebuild.hpp"
 #include "map/starting_planes.hpp"

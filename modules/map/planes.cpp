@@ -5,7 +5,7 @@
 #include <map>
 #include <utility>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "map/rebuild.hpp"
 
 namespace planemap::map {

@@ -10,7 +10,7 @@
 #include <random>
 #include <utility>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "core/geometry/rigid_fit.hpp"
 #include "places/comparison.hpp"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "benchmark/readings.hpp"
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "messages/channels.hpp"
 #include "messages/frame_decoder.hpp"
 #include "pipeline/given_poses.hpp"

@@ -10,7 +10,7 @@
 #include "benchmark/child.hpp"
 #include "benchmark/choices.hpp"
 #include "benchmark/rendering.hpp"
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "sensor/source.hpp"
 
 namespace planemap::bench_odometry {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench_odometry/closures.hpp"
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 
 namespace planemap::bench_odometry {
 

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "benchmark/table.hpp"
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 
 namespace planemap::bench_odometry {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "core/geometry/plane_intersection.hpp"
 #include "core/geometry/segment.hpp"
 #include "evaluate/statistics.hpp"

@@ -6,7 +6,7 @@
 #include <map>
 #include <opencv2/imgproc.hpp>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "core/geometry/box.hpp"
 #include "simulator/simulated_source.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "core/geometry/plane.hpp"
 
 namespace planemap {
