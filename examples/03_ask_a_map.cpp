@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Asks a stored map: the plane nearest to a point, what a ray meets and how far the way there is known to be
-// free, how high it is free above a point, and how two planes lie to each other.
+// Asks a stored map: the plane nearest to a point, which planes a robot would touch there, what a ray meets
+// and how far the way there is known to be free, how high it is free above a point, and how two planes lie to
+// each other.
 //   03_ask_a_map plane_map.lcmlog [X Y Z]     a point of the world frame (metres); default: 1 m before the
 //   first camera
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <vector>
 
 #include "map/map_file.hpp"
 #include "map/queries.hpp"
@@ -20,7 +22,8 @@ const char* name_of(planemap::map::Place place) {
 void tell(const char* what, const planemap::map::MapQueries::Stretch& seen) {
     std::printf("%s: free for %.3f m, then %s", what, seen.free, name_of(seen.end));
     if (seen.hit)
-        std::printf("; plane %d after %.3f m\n", seen.hit->id, seen.hit->range);
+        std::printf("; plane %d after %.3f m%s\n", seen.hit->id, seen.hit->range,
+                    seen.hit->from_front ? "" : ", from behind");
     else
         std::puts("; no plane");
 }
@@ -33,6 +36,13 @@ void ask(const char* file, const Eigen::Vector3d& p_world) {
     if (nearest) std::printf("nearest: plane %d, %.3f m away\n", nearest->id, nearest->distance);
 
     std::printf("the point is %s\n", name_of(queries.state_at(p_world)));
+
+    constexpr double kHalf_m = 0.3;  // of a robot that would stand there
+    const Eigen::Vector3d half = Eigen::Vector3d::Constant(kHalf_m);
+    std::printf("in a cube of %.1f m around it:", 2 * kHalf_m);
+    const std::vector<int> touched = queries.touching({p_world - half, p_world + half});
+    for (const int id : touched) std::printf(" plane %d", id);
+    std::puts(touched.empty() ? " no plane" : "");
 
     if (const auto ahead = queries.look_along(p_world, Eigen::Vector3d::UnitZ(), 20))
         tell("ray along z", *ahead);

@@ -62,13 +62,6 @@ FieldWeights field_weights(const CameraInfo& sensed, double u, double v) {
     return field_weights(sensed.depth, place.x(), place.y());
 }
 
-double offset_at(const DepthCorrection& correction, const PinholeCamera& depth, double u, double v) {
-    const FieldWeights field = field_weights(depth, u, v);
-    double offset = 0;
-    for (std::size_t i = 0; i < 4; ++i) offset += field.weights[i] * correction.offsets[field.nodes[i]];
-    return offset;
-}
-
 DepthCorrection composed(const DepthCorrection& first, const DepthCorrection& second) {
     DepthCorrection both = second;
     for (std::size_t i = 0; i < both.offsets.size(); ++i) both.offsets[i] += first.offsets[i];

@@ -24,9 +24,6 @@ FieldWeights field_weights(const PinholeCamera& depth, double u, double v);
 /// arrives, as the lens draws it.
 FieldWeights field_weights(const CameraInfo& sensed, double u, double v);
 
-/// Offset of inverse depth there, 1/metres: true inverse depth = sensed + offset.
-double offset_at(const DepthCorrection& correction, const PinholeCamera& depth, double u, double v);
-
 /// What both together correct: inverse depths add up. The certainty is the second one's, which was learnt
 /// with the first one in place.
 DepthCorrection composed(const DepthCorrection& first, const DepthCorrection& second);

@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "core/geometry/inverse_depth.hpp"
+#include "core/inverse_depth.hpp"
 #include "core/rounding.hpp"
 
 namespace planemap {

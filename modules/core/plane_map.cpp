@@ -16,7 +16,7 @@ Eigen::Matrix3d reference_axes(const Eigen::Vector3d& normal) {
 }
 
 template <typename T>
-std::size_t heap_bytes(const std::vector<T>& v) {
+std::size_t capacity_bytes(const std::vector<T>& v) {
     return v.capacity() * sizeof(T);
 }
 
@@ -138,10 +138,10 @@ const MapOutline* PlaneMap::inferred_of(int id) const {
 }
 
 std::size_t memory_bytes(const PlaneMap& map) {
-    std::size_t bytes = sizeof map + heap_bytes(map.planes) + heap_bytes(map.lines) + heap_bytes(map.points) +
-                        heap_bytes(map.inferred);
-    for (const MapPlane& plane : map.planes) bytes += heap_bytes(plane.outline.packed);
-    for (const InferredRings& rings : map.inferred) bytes += heap_bytes(rings.outline.packed);
+    std::size_t bytes = sizeof map + capacity_bytes(map.planes) + capacity_bytes(map.lines) +
+                        capacity_bytes(map.points) + capacity_bytes(map.inferred);
+    for (const MapPlane& plane : map.planes) bytes += capacity_bytes(plane.outline.packed);
+    for (const InferredRings& rings : map.inferred) bytes += capacity_bytes(rings.outline.packed);
     return bytes;
 }
 

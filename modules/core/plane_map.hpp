@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The map of planes as it is kept, sent and stored: small, and the same bytes in all three.
+// The map of planes as it is kept and stored, small; sent it is packed once more, see messages/packed_map.
 #pragma once
 
 #include <array>

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/footprints.hpp"
-#include "core/geometry/inverse_depth.hpp"
+#include "core/inverse_depth.hpp"
 #include "core/registration_kernels.hpp"
 #include "core/reprojection.hpp"
 

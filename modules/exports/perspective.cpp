@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "exports/exports.hpp"
 #include "exports/parts.hpp"
 #include "exports/svg.hpp"

@@ -6,7 +6,7 @@
 #include <map>
 #include <utility>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "graph/node_index.hpp"
 
 namespace planemap::graph {

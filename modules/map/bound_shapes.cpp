@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/geometry/outline_frame.hpp"
 #include "core/geometry/plane_intersection.hpp"
 
 namespace planemap::map {
@@ -128,11 +129,7 @@ Bitmap BoundShape::no_cells() const {
 
 void draw(const Outline& outline, const Pose& raster_from_outline, double cell_m, Bitmap& cells) {
     FlatPolygon polygon;
-    for (const Ring& ring : outline.rings) {
-        for (const Eigen::Vector2d& v : ring)
-            polygon.vertices.emplace_back((raster_from_outline * Eigen::Vector3d(v.x(), v.y(), 0)).head<2>());
-        polygon.ring_ends.push_back(polygon.vertices.size());
-    }
+    polygon.assign(projected(raster_from_outline, outline));
     const Eigen::Vector2d first(64.0 * cells.word0() + 0.5, cells.y0() + 0.5);
     cells.draw(polygon, [&](const Eigen::Vector2d& v) -> Eigen::Vector2d { return v / cell_m - first; });
 }

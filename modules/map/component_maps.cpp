@@ -160,7 +160,7 @@ std::size_t ComponentMaps::keyframes() const {
 
 std::size_t ComponentMaps::rebuilds() const {
     std::size_t rebuilds = 0;
-    for (const auto& [component, map] : maps_) rebuilds += map.rebuilds();
+    for (const auto& [component, map] : maps_) rebuilds += map.work().rebuilds;
     return rebuilds;
 }
 

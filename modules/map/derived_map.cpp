@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "map/labels.hpp"
 
 namespace planemap::map {

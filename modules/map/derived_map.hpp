@@ -20,7 +20,7 @@ namespace planemap::map {
 class DerivedMap {
   public:
     DerivedMap(const DerivationRules& derivation, const AdjacencyRules& adjacency,
-               const InferenceRules& inference = {})
+               const InferenceRules& inference)
         : derivation_(derivation), adjacency_(adjacency), intersections_(adjacency), inferred_(inference) {}
 
     const PlaneMap& map() const { return map_; }

@@ -2,10 +2,12 @@
 #include "map/evidence_grid.hpp"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <utility>
+
+#include "core/geometry/outline_frame.hpp"
+#include "map/evidence_blocks.hpp"
 
 namespace planemap::map {
 
@@ -35,11 +37,8 @@ void EvidenceGrid::grow(int word_from, int y_from, int word_to, int y_to) {
 
 /// Draws a polygon into a bitmap of the words that it needs, and makes room for it.
 void EvidenceGrid::draw(const FlatPolygon& polygon, Bitmap& inside) {
-    Eigen::Vector2d low = polygon.vertices[0], high = low;
-    for (const auto& v : polygon.vertices) {
-        low = low.cwiseMin(v);
-        high = high.cwiseMax(v);
-    }
+    const Eigen::AlignedBox2d box = bounds(polygon);
+    const Eigen::Vector2d &low = box.min(), &high = box.max();
     const double per_cell = 1 / cell_m_;
     const auto cell = [&](double metres) { return static_cast<int>(std::floor(metres * per_cell)); };
     const int y_from = cell(low.y()), y_to = cell(high.y()) + 1;
@@ -61,18 +60,11 @@ void EvidenceGrid::for_each_word(const Bitmap& cells, const F& f) {
     }
 }
 
-int EvidenceGrid::add(const FlatPolygon& polygon, int strength, int looks, std::vector<Block>* fresh) {
+int EvidenceGrid::add(const FlatPolygon& polygon, int strength, int looks,
+                      std::vector<EvidenceBlock>* fresh) {
     if (polygon.vertices.empty()) return 0;
     draw(polygon, inside_);
-    if (fresh != nullptr) {
-        const int word = inside_.word0() - word0_;
-        const auto unseen = [&](int y, int w, const EvidenceCells& cells) {
-            const bool is_inside = y >= inside_.y0() && y < inside_.y0() + inside_.rows();
-            return is_inside ? inside_.row(y)[w - word] & ~cells.seen() : 0;
-        };
-        add_blocks(inside_.y0() & ~3, inside_.y0() + inside_.rows(), word, word + inside_.words(), unseen,
-                   *fresh);
-    }
+    if (fresh != nullptr) add_unseen_blocks(*this, inside_, *fresh);
     int came = 0;
     for_each_word(inside_, [&](std::uint64_t bits, EvidenceCells& cells) {
         const std::uint64_t before = cells.present();
@@ -149,99 +141,6 @@ void EvidenceGrid::add(const EvidenceGrid& other) {
                 if ((theirs.support >> strength & 1) != 0) here.add_support(bit, strength);
         }
     }
-}
-
-template <typename Select>
-void EvidenceGrid::add_blocks(int first_row, int last_row, int first_word, int last_word,
-                              const Select& select, std::vector<Block>& blocks) const {
-    for (int y = first_row; y < last_row; y += 4) {
-        for (int w = first_word; w < last_word; ++w) {
-            std::array<std::uint64_t, 4> rows{};
-            for (int r = std::max(y, y0_); r < std::min(y + 4, y0_ + rows_); ++r)
-                rows[static_cast<std::size_t>(r - y)] = select(r, w, row(r)[w]);
-            std::uint64_t any = rows[0] | rows[1] | rows[2] | rows[3];
-            for (int nibble = 0; any != 0; ++nibble, any >>= 4) {
-                if ((any & 15) == 0) continue;
-                std::uint64_t cells = 0;
-                for (std::size_t r = 0; r < 4; ++r) cells |= (rows[r] >> (4 * nibble) & 15) << (4 * r);
-                const Eigen::Vector2d middle(cell_m_ * (64.0 * (word0_ + w) + 4.0 * nibble + 2.0),
-                                             cell_m_ * (y + 2.0));
-                blocks.push_back({middle, y, w, nibble, static_cast<std::uint16_t>(cells)});
-            }
-        }
-    }
-}
-
-void EvidenceGrid::seen_blocks(const Eigen::Vector2d& low, const Eigen::Vector2d& high,
-                               std::vector<Block>& blocks) const {
-    // Blocks are aligned to the cells' coordinates, whatever part of them is looked at.
-    const double per_cell = 1 / cell_m_;
-    const auto within = [](double value, int from, int to) {
-        return static_cast<int>(
-            std::clamp(std::floor(value), static_cast<double>(from), static_cast<double>(to)));
-    };
-    const int first_row = within(low.y() * per_cell, y0_, y0_ + rows_) & ~3;
-    const int last_row = within(high.y() * per_cell + 1, y0_, y0_ + rows_);
-    const int first_word = within(low.x() * per_cell / 64, word0_, word0_ + words_) - word0_;
-    const int last_word = within(high.x() * per_cell / 64 + 1, word0_, word0_ + words_) - word0_;
-    const auto may_go = [](int, int, const EvidenceCells& cells) {
-        return cells.seen() & ~cells.with_odds(EvidenceCells::kLeastOdds);
-    };
-    add_blocks(first_row, last_row, first_word, last_word, may_go, blocks);
-}
-
-template <typename F>
-int EvidenceGrid::change(const Block& block, const F& f) {
-    int lost = 0;
-    for (int r = std::max(block.y, y0_); r < std::min(block.y + 4, y0_ + rows_); ++r) {
-        EvidenceCells& c = row(r)[block.word];
-        const std::uint64_t chosen = block.cells >> (4 * (r - block.y)) & 15;
-        const std::uint64_t cells = c.seen() & chosen << (4 * block.nibble);
-        const std::uint64_t before = c.present();
-        f(c, cells);
-        lost += std::popcount(before & ~c.present());
-    }
-    return lost;
-}
-
-int EvidenceGrid::miss(const Block& block, int looks) {
-    return change(block, [&](EvidenceCells& c, std::uint64_t cells) { c.miss(cells, looks); });
-}
-
-int EvidenceGrid::miss_before(const Block& block, int looks) {
-    return change(block, [&](EvidenceCells& c, std::uint64_t cells) { c.miss_before(cells, looks); });
-}
-
-bool is_near(const EvidenceGrid& grid, const Bitmap& cells, const EvidenceBlock& block, int beside) {
-    const int first_row = std::max(block.y - beside, cells.y0());
-    const int last_row = std::min(block.y + 4 + beside, cells.y0() + cells.rows());
-    // The block's bits, and those beside them, as far as they lie in the words before and after.
-    const int word = block.word + grid.word0() - cells.word0(), first = 4 * block.nibble;
-    const std::uint64_t four = std::uint64_t{15} << first;
-    std::uint64_t here = four;
-    for (int i = 1; i <= beside; ++i) here |= four << i | four >> i;
-    const std::uint64_t after =
-        first + 4 + beside > 64 ? (std::uint64_t{1} << (first + 4 + beside - 64)) - 1 : 0;
-    const std::uint64_t before = first < beside ? ~std::uint64_t{0} << (64 + first - beside) : 0;
-    const std::array<std::uint64_t, 3> masks{before, here, after};
-    for (int r = first_row; r < last_row; ++r) {
-        for (int w = 0; w < 3; ++w) {
-            const int at = word - 1 + w;
-            if (at >= 0 && at < cells.words() && (cells.row(r)[at] & masks[static_cast<std::size_t>(w)]) != 0)
-                return true;
-        }
-    }
-    return false;
-}
-
-bool is_undecided(const EvidenceGrid& grid, const EvidenceBlock& block) {
-    std::uint64_t cells = 0;
-    const int last = std::min(block.y + 4, grid.y0() + grid.rows());
-    for (int r = std::max(block.y, grid.y0()); r < last; ++r) {
-        const EvidenceCells& c = grid.row(r)[block.word];
-        cells |= c.seen() & ~c.decided();
-    }
-    return (cells >> (4 * block.nibble) & 15) != 0;
 }
 
 EvidenceGrid::Evidence EvidenceGrid::evidence(const Eigen::Vector2d& p_grid) const {

@@ -11,11 +11,10 @@ namespace planemap::map {
 
 /// How a plane's shape is read off its evidence.
 struct OutlineOptions {
-    int min_support = 1;        ///< that a cell needs to be part of the shape, 1 to 15
-    double min_ring_m2 = 0.01;  ///< smaller parts and smaller holes are left out
-    double tolerance_m =
-        0.03;             ///< no traced vertex is further than this from the simplified outline, but for
-    double least_m2 = 0;  ///< teeth and notches whose corners enclose less, see EdgeRules
+    int min_support;     ///< that a cell needs to be part of the shape, 1 to 15
+    double min_ring_m2;  ///< smaller parts and smaller holes are left out
+    double tolerance_m;  ///< no traced vertex is further than this from the simplified outline, but for
+    double least_m2;     ///< teeth and notches whose corners enclose less, see EdgeRules
 };
 
 /// The shape of what a plane's evidence says is there: cells with enough support; slits of up to two cells

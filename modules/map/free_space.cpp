@@ -5,6 +5,8 @@
 #include <cmath>
 #include <map>
 
+#include "map/evidence_blocks.hpp"
+
 namespace planemap::map {
 
 namespace {
@@ -31,7 +33,7 @@ Viewpoint::Viewpoint(const StoredKeyframe& seen)
       planes(seen_planes(seen)) {}
 
 void FreeSpace::carve(std::vector<PlaneEstimate>& planes, const Viewpoint& viewpoint, int looks) const {
-    std::vector<EvidenceGrid::Block> blocks;
+    std::vector<EvidenceBlock> blocks;
     for (PlaneEstimate& plane : planes) {
         const std::optional<Footprint> footprint = footprint_of(plane, viewpoint);
         if (!footprint) continue;
@@ -39,25 +41,25 @@ void FreeSpace::carve(std::vector<PlaneEstimate>& planes, const Viewpoint& viewp
         std::vector<const Bitmap*> own(drawn.size());
         std::transform(drawn.begin(), drawn.end(), own.begin(), [](const Bitmap& cells) { return &cells; });
         blocks.clear();
-        plane.grid.seen_blocks(footprint->low, footprint->high, blocks);
+        add_seen_blocks(plane.grid, footprint->low, footprint->high, blocks);
         int lost = 0;
         for_each_past(plane, viewpoint, *footprint, own, blocks,
-                      [&](const EvidenceGrid::Block& block) { lost += plane.grid.miss(block, looks); });
+                      [&](const EvidenceBlock& block) { lost += miss(plane.grid, block, looks); });
         plane.changed_cells += lost;
         plane.changed = plane.changed || lost > 0;
     }
 }
 
 void FreeSpace::carve_before(PlaneEstimate& plane, const std::vector<Viewpoint>& viewpoints,
-                             std::vector<EvidenceGrid::Block>& blocks) const {
+                             std::vector<EvidenceBlock>& blocks) const {
     int lost = 0;
     for (const Viewpoint& viewpoint : viewpoints) {
         const std::optional<Footprint> footprint = footprint_of(plane, viewpoint);
         if (!footprint) continue;
-        for_each_past(plane, viewpoint, *footprint, {}, blocks, [&](EvidenceGrid::Block& block) {
+        for_each_past(plane, viewpoint, *footprint, {}, blocks, [&](EvidenceBlock& block) {
             // More would not have counted before the cells were seen.
             const int more = std::min(viewpoint.keyframe->looks, -EvidenceCells::kLeastOdds - block.missed);
-            lost += plane.grid.miss_before(block, more);
+            lost += miss_before(plane.grid, block, more);
             block.missed = static_cast<std::uint16_t>(block.missed + more);
         });
     }
@@ -69,9 +71,9 @@ void FreeSpace::look_back(PlaneEstimate& plane, const std::vector<SeenCells>& se
                           const std::vector<Viewpoint>& viewpoints) const {
     const EvidenceGrid before = plane.grid;
     plane.grid.forget_odds();
-    std::vector<EvidenceGrid::Block> blocks;
+    std::vector<EvidenceBlock> blocks;
     const Eigen::Vector2d everywhere = Eigen::Vector2d::Constant(1e9);
-    plane.grid.seen_blocks(-everywhere, everywhere, blocks);
+    add_seen_blocks(plane.grid, -everywhere, everywhere, blocks);
     std::multimap<const StoredKeyframe*, const Bitmap*> drawn;
     for (const SeenCells& cells : seen) drawn.emplace(cells.view, &cells.cells);
     std::vector<const Bitmap*> own;
@@ -86,12 +88,12 @@ void FreeSpace::look_back(PlaneEstimate& plane, const std::vector<SeenCells>& se
         own.clear();
         const auto [from, to] = drawn.equal_range(viewpoint.keyframe);
         for (auto at = from; at != to; ++at) own.push_back(at->second);
-        for_each_past(plane, viewpoint, *footprint, own, blocks, [&](const EvidenceGrid::Block& block) {
-            plane.grid.miss_before(block, viewpoint.keyframe->looks);
+        for_each_past(plane, viewpoint, *footprint, own, blocks, [&](const EvidenceBlock& block) {
+            miss_before(plane.grid, block, viewpoint.keyframe->looks);
         });
         if (++looked < tidy_at) continue;
         tidy_at += std::max(kTidyAfter, looked / 2);
-        std::erase_if(blocks, [&](const EvidenceGrid::Block& block) {
+        std::erase_if(blocks, [&](const EvidenceBlock& block) {
             return block.asked >= kMostAsked || !is_undecided(plane.grid, block);
         });
     }
@@ -147,7 +149,7 @@ std::optional<FreeSpace::Footprint> FreeSpace::footprint_of(const PlaneEstimate&
 template <typename F>
 void FreeSpace::for_each_past(const PlaneEstimate& plane, const Viewpoint& viewpoint,
                               const Footprint& footprint, const std::vector<const Bitmap*>& own,
-                              std::vector<EvidenceGrid::Block>& blocks, const F& f) const {
+                              std::vector<EvidenceBlock>& blocks, const F& f) const {
     const Eigen::Vector3d origin = footprint.camera_from_grid.translation();
     const Eigen::Vector3d x = footprint.camera_from_grid.linear().col(0),
                           y = footprint.camera_from_grid.linear().col(1),
@@ -155,9 +157,9 @@ void FreeSpace::for_each_past(const PlaneEstimate& plane, const Viewpoint& viewp
     const SeenRegions seen = viewpoint.seen();
     const auto first =
         std::lower_bound(blocks.begin(), blocks.end(), footprint.low.y(),
-                         [](const EvidenceGrid::Block& block, double low) { return block.middle.y() < low; });
+                         [](const EvidenceBlock& block, double low) { return block.middle.y() < low; });
     for (auto at = first; at != blocks.end(); ++at) {
-        EvidenceGrid::Block& block = *at;
+        EvidenceBlock& block = *at;
         if (block.asked >= kMostAsked || block.middle.x() < footprint.low.x() ||
             block.middle.x() > footprint.high.x())
             continue;

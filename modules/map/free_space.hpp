@@ -47,7 +47,7 @@ class FreeSpace {
     /// What viewpoints saw past before, the newest first, in blocks of a plane's grid (row after row) that
     /// were not looked at then.
     void carve_before(PlaneEstimate& plane, const std::vector<Viewpoint>& viewpoints,
-                      std::vector<EvidenceGrid::Block>& blocks) const;
+                      std::vector<EvidenceBlock>& blocks) const;
     /// All that was seen of a plane and past it (support is in its grid already), going back in time: `seen`
     /// and `viewpoints` with the newest first; where both are of one time, the cells were seen last. What the
     /// grid holds was before. A place that many viewpoints saw is asked of the newest ones: so the work
@@ -68,7 +68,7 @@ class FreeSpace {
     /// that, it does not see past.
     template <typename F>
     void for_each_past(const PlaneEstimate& plane, const Viewpoint& viewpoint, const Footprint& footprint,
-                       const std::vector<const Bitmap*>& own, std::vector<EvidenceGrid::Block>& blocks,
+                       const std::vector<const Bitmap*>& own, std::vector<EvidenceBlock>& blocks,
                        const F& f) const;
 
     PastRules rules_;

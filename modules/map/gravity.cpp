@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "map/handling.hpp"
 #include "map/room_view.hpp"
 

@@ -39,13 +39,6 @@ void for_each_cell(const Bitmap& cells, const F& f) {
         for (int w = 0; w < cells.words(); ++w) for_each_bit(cells.row(y)[w], cells.word0() + w, y, f);
 }
 
-/// Bits of a without those of b, which has the same words and rows.
-Bitmap without(Bitmap a, const Bitmap& b) {
-    for (int y = a.y0(); y < a.y0() + a.rows(); ++y)
-        for (int w = 0; w < a.words(); ++w) a.row(y)[w] &= ~b.row(y)[w];
-    return a;
-}
-
 }  // namespace
 
 Inference::Inference(const PlaneMap& map, const std::vector<Viewpoint>& views,
@@ -186,8 +179,11 @@ InferredCells Inference::result(std::size_t index) {
     Hidden& hidden = hidden_[index];
     Bitmap all = hidden.inferred;
     all |= shape.seen;
-    Bitmap cells = without(all.closed(kSlit), shape.seen);
-    for_each_cell(without(cells, hidden.inferred), [&](int x, int y) {
+    Bitmap cells = all.closed(kSlit);
+    cells -= shape.seen;
+    Bitmap slits = cells;
+    slits -= hidden.inferred;
+    for_each_cell(slits, [&](int x, int y) {
         if (hidden.blocks.at(x >> 2, y >> 2) != HiddenBlocks::Place::kHidden) cells.set(x, y, false);
     });
     InferredCells result{shape.world_from_raster, cell_m_, cells.opened(kSliver), {}};

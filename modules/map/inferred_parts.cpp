@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/geometry/outline_frame.hpp"
+
 namespace planemap::map {
 
 void InferredParts::start_from(const PlaneMap& map) {
@@ -51,8 +53,7 @@ MapOutline InferredParts::outline_of(const MapPlane& plane) const {
         inferred.world_from_raster.inverse(Eigen::Isometry) * plane.world_from_plane();
     Bitmap cells = inferred.cells, seen(cells.word0(), cells.y0(), cells.words(), cells.rows());
     draw(plane.outline.rings(), raster_from_plane, inferred.cell_m, seen);
-    for (int y = cells.y0(); y < cells.y0() + cells.rows(); ++y)
-        for (int w = 0; w < cells.words(); ++w) cells.row(y)[w] &= ~seen.row(y)[w];
+    cells -= seen;
     Outline outline = cells.opened(1).trace();
     for (Ring& ring : outline.rings)
         for (Eigen::Vector2d& v : ring) v *= inferred.cell_m;
@@ -60,9 +61,7 @@ MapOutline InferredParts::outline_of(const MapPlane& plane) const {
                   [&](const Ring& ring) { return std::abs(signed_area(ring)) < rules_.least_m2; });
     outline = with_straight_edges(outline, inferred.lines, {inferred.cell_m, rules_.tolerance_m, 0.005});
     const Pose plane_from_raster = raster_from_plane.inverse(Eigen::Isometry);
-    for (Ring& ring : outline.rings)
-        for (Eigen::Vector2d& v : ring) v = (plane_from_raster * Eigen::Vector3d(v.x(), v.y(), 0)).head<2>();
-    return MapOutline(outline);
+    return MapOutline(projected(plane_from_raster, std::move(outline)));
 }
 
 std::size_t InferredParts::memory_bytes() const {

@@ -12,10 +12,10 @@ namespace planemap::map {
 
 /// How inferred parts are drawn.
 struct InferenceRules {
-    bool infers = true;         ///< else there are none
-    double cell_m = 0.025;      ///< of the raster
-    double tolerance_m = 0.04;  ///< by which an outline may leave the cells
-    double least_m2 = 0.05;     ///< smaller parts, and smaller holes, are left out
+    bool infers;         ///< else there are none
+    double cell_m;       ///< of the raster
+    double tolerance_m;  ///< by which an outline may leave the cells
+    double least_m2;     ///< smaller parts, and smaller holes, are left out
 };
 
 /// What is inferred of the map's planes: found when the map is made anew, cut by what is seen since.

@@ -120,7 +120,7 @@ std::vector<IntersectionLine> intersection_lines(const PlaneShape& a, const Plan
 
 std::optional<IntersectionPoint> intersection_point(const PlaneShape& a, const PlaneShape& b,
                                                     const PlaneShape& c, const AdjacencyRules& rules) {
-    const auto position = common_point(a.plane, b.plane, c.plane, std::pow(std::sin(rules.min_angle_rad), 2));
+    const auto position = common_point(a.plane, b.plane, c.plane, least_volume(rules.min_angle_rad));
     if (!position) return std::nullopt;
     IntersectionPoint point;
     point.position = position->cast<float>();

@@ -12,10 +12,10 @@ namespace planemap::map {
 
 /// When two planes count as adjacent.
 struct AdjacencyRules {
-    double gap_m = 0.15;                   ///< each outline comes this near to the common line
-    double min_angle_rad = kParallel_rad;  ///< flatter pairs have no well-defined line
-    double min_length_m = 0.15;            ///< shorter pieces of the line are left out
-    double slack_m = 0.04;                 ///< by which outlines err, whatever their readings
+    double gap_m;          ///< each outline comes this near to the common line
+    double min_angle_rad;  ///< flatter pairs have no well-defined line
+    double min_length_m;   ///< shorter pieces of the line are left out
+    double slack_m;        ///< by which outlines err, whatever their readings
 };
 
 /// How near to their common line two planes end that end at it: as near as outlines and the planes' readings

@@ -2,7 +2,6 @@
 #include "map/keyframe_store.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 #include <type_traits>
 #include <utility>
@@ -13,10 +12,6 @@
 namespace planemap::map {
 
 namespace {
-
-bool is_near(const Pose& world_from_camera) {
-    return is_valid(world_from_camera) && is_near_origin(world_from_camera.translation());
-}
 
 bool is_in_map(const StoredKeyframe& keyframe) {
     return keyframe.world_from_camera.has_value();
@@ -49,58 +44,8 @@ KeyframeStore::Arrival KeyframeStore::add(const Keyframe& keyframe, MapLosses& l
     return Arrival::kNew;
 }
 
-/// The keyframe that a look is from near of, or what took its place; none where that is not known.
-KeyframeStore::Anchor KeyframeStore::anchor_of(const Look& look) {
-    Anchor anchor{nullptr, look.keyframe_from_camera};
-    if (!is_near(anchor.keyframe_from_camera)) return anchor;
-    Heirs::Place place{look.keyframe_id, look.keyframe_utime};
-    for (std::size_t step = 0; step <= Heirs::kMost; ++step) {
-        const auto known = keyframes_.find(place.id);
-        if (known != keyframes_.end()) {
-            if (known->second.utime == place.utime) anchor.keyframe = &known->second;
-            return anchor;
-        }
-        if (!heirs_.follow(place, anchor.keyframe_from_camera)) return anchor;
-    }
-    return anchor;
-}
-
-KeyframeStore::Looked KeyframeStore::add(const Look& look, MapLosses& losses) {
-    const Anchor anchor = anchor_of(look);
-    if (anchor.keyframe == nullptr) {
-        ++losses.looks_refused;
-        return {};
-    }
-    StoredKeyframe& keyframe = *anchor.keyframe;
-    const auto view_of_look = [&]() -> StoredKeyframe* {
-        StoredKeyframe* view = nullptr;
-        for_each_view(keyframe, [&](StoredKeyframe& other) {
-            if (other.id == look.keyframe_id && other.number == look.number) view = &other;
-        });
-        // What a keyframe that went saw is what its heir saw, where it was not kept.
-        return view == nullptr && look.number == 0 ? &keyframe : view;
-    };
-    if (StoredKeyframe* view = view_of_look()) {
-        const int before = view->looks;
-        view->see_again(look.looks, look.utime);
-        return {view, view->looks - before, false, keyframe.id};
-    }
-    if (!look.is_news()) {
-        ++losses.looks_refused;
-        return {};
-    }
-    StoredKeyframe news = intake_.view(look.keyframe_id, look.utime, look.regions, keyframe.noise, losses);
-    news.number = look.number;
-    news.keyframe_from_camera = anchor.keyframe_from_camera;
-    if (keyframe.world_from_camera)
-        news.world_from_camera = *keyframe.world_from_camera * news.keyframe_from_camera;
-    keyframe.take_later(std::move(news));
-    StoredKeyframe* view = view_of_look();
-    return {view, 1, view != nullptr, keyframe.id};
-}
-
 void KeyframeStore::set_pose(int id, const Pose& world_from_camera) {
-    if (is_near(world_from_camera)) poses_[id] = world_from_camera;
+    if (is_placeable(world_from_camera)) poses_[id] = world_from_camera;
 }
 
 KeyframeStore::Motion KeyframeStore::update(const std::vector<KeyframePose>& named,
@@ -109,7 +54,7 @@ KeyframeStore::Motion KeyframeStore::update(const std::vector<KeyframePose>& nam
     Motion motion;
     for (const KeyframePose& pose : named) {
         if (pose.id <= retired_up_to_) continue;
-        if (!is_near(pose.world_from_camera)) {
+        if (!is_placeable(pose.world_from_camera)) {
             ++losses.poses_refused;
             continue;
         }
@@ -197,7 +142,7 @@ std::size_t KeyframeStore::drop_waiting(std::size_t most) {
 void KeyframeStore::absorb(KeyframeStore&& other) {
     keyframes_.merge(other.keyframes_);
     poses_.merge(other.poses_);
-    heirs_.absorb(std::move(other.heirs_));
+    looks_.absorb(std::move(other.looks_));
     named_.insert(named_.end(), other.named_.begin(), other.named_.end());
     newest_id_ = std::max(newest_id_, other.newest_id_);
 }
@@ -224,7 +169,7 @@ std::map<int, std::vector<int>> KeyframeStore::sightings() const {
 }
 
 std::size_t KeyframeStore::memory_bytes() const {
-    std::size_t bytes = node_bytes(poses_) + node_bytes(keyframes_) + heirs_.memory_bytes() +
+    std::size_t bytes = node_bytes(poses_) + node_bytes(keyframes_) + looks_.memory_bytes() +
                         heap_bytes(named_.capacity() * sizeof(KeyframePose));
     for (const auto& [id, keyframe] : keyframes_) bytes += map::memory_bytes(keyframe) - sizeof keyframe;
     return bytes;

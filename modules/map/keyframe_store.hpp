@@ -8,7 +8,7 @@
 
 #include "core/keyframe.hpp"
 #include "core/look.hpp"
-#include "map/heirs.hpp"
+#include "map/look_intake.hpp"
 #include "map/map_losses.hpp"
 #include "map/region_intake.hpp"
 #include "map/stored_keyframe.hpp"
@@ -27,7 +27,7 @@ constexpr bool is_far_ahead(int id, int newest_id) {
 class KeyframeStore {
   public:
     /// Regions that reach further than max_extent_m / 2 from their middle are refused.
-    explicit KeyframeStore(double max_extent_m) : intake_(max_extent_m) {}
+    explicit KeyframeStore(double max_extent_m) : intake_(max_extent_m), looks_(max_extent_m) {}
 
     enum class Arrival {
         kRefused,
@@ -36,17 +36,10 @@ class KeyframeStore {
     /// Takes what the map needs of a keyframe, its largest regions first. Counts what it refuses, one that
     /// came before, too: who sends it again has nothing new to say.
     Arrival add(const Keyframe& keyframe, MapLosses& losses);
-    /// What became of a look: the keyframe's view that it is part of, and how many looks more saw that; none
-    /// where its keyframe is not known, or nothing is new in it.
-    struct Looked {
-        StoredKeyframe* view = nullptr;
-        int more = 0;
-        bool is_news = false;
-        int keyframe_id = -1;  ///< of the keyframe that it is from near of
-    };
-    Looked add(const Look& look, MapLosses& losses);
+    /// See LookIntake.
+    Looked add(const Look& look, MapLosses& losses) { return looks_.add(look, keyframes_, losses); }
     /// Whether the look's keyframe is in the store, or one that took its place.
-    bool knows(const Look& look) { return anchor_of(look).keyframe != nullptr; }
+    bool knows(const Look& look) { return looks_.knows(look, keyframes_); }
     /// Takes the pose of one keyframe; one that is none, or too far out, is ignored.
     void set_pose(int id, const Pose& world_from_camera);
 
@@ -67,7 +60,9 @@ class KeyframeStore {
     /// update().
     std::vector<StoredKeyframe> take_replaced(const std::vector<KeyframePose>& named);
     /// Looks of a keyframe that went are looks from near this one, at their poses now, from here on.
-    void redirect_looks(const StoredKeyframe& gone, const StoredKeyframe& heir) { heirs_.add(gone, heir); }
+    void redirect_looks(const StoredKeyframe& gone, const StoredKeyframe& heir) {
+        looks_.redirect(gone, heir);
+    }
     /// The keyframes in the map nearest to a pose (a radian counts as a metre), the nearest first.
     std::vector<StoredKeyframe*> nearest(const Pose& world_from_camera, std::size_t count);
 
@@ -97,17 +92,11 @@ class KeyframeStore {
     std::size_t memory_bytes() const;
 
   private:
-    struct Anchor {
-        StoredKeyframe* keyframe = nullptr;
-        Pose keyframe_from_camera = Pose::Identity();
-    };
-    Anchor anchor_of(const Look& look);
-
     RegionIntake intake_;
     std::map<int, StoredKeyframe> keyframes_;  ///< by id
     std::map<int, Pose> poses_;
     std::vector<KeyframePose> named_;  ///< by the last trajectory
-    Heirs heirs_;
+    LookIntake looks_;
     int newest_id_ = -1;                                   ///< the largest id of a keyframe so far
     int retired_up_to_ = std::numeric_limits<int>::min();  ///< keyframes up to this id are gone for good
 };

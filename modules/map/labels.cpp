@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "map/standing.hpp"
 
 namespace planemap::map {

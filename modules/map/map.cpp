@@ -3,9 +3,11 @@
 
 #include <utility>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "map/hand_over.hpp"
 #include "map/rebuild.hpp"
+#include "map/region_planes.hpp"
+#include "map/rules.hpp"
 #include "map/starting_planes.hpp"
 
 namespace planemap::map {
@@ -19,25 +21,6 @@ constexpr std::size_t kHeirs = 8;
 MapOptions validated(const MapOptions& options) {
     options.validate();
     return options;
-}
-
-DerivationRules derivation_rules(const MapOptions& options) {
-    // A tooth has two corners that enclose half of it each.
-    return {{options.outline_min_support, options.outline_min_ring_m2, options.outline_tolerance_m,
-             0.5 * options.outline_min_ring_m2},
-            options.min_area_m2,
-            options.min_single_m2,
-            options.min_keyframes};
-}
-
-InferenceRules inference_rules(const MapOptions& options) {
-    return {options.infer_hidden, options.outline_cell_m, options.outline_tolerance_m, options.min_area_m2};
-}
-
-AdjacencyRules adjacency_rules(const MapOptions& options) {
-    constexpr double kCells = 1.5;  // by which a shape that is drawn in cells, and closed, errs
-    return {options.adjacency_gap_m, radians(options.adjacency_angle_deg), options.adjacency_length_m,
-            kCells * options.outline_cell_m};
 }
 
 }  // namespace
@@ -54,7 +37,7 @@ void PlaneMapper::start_from(const PlaneMap& map, const SeenSpace& seen) {
     seen_before_.start_from(seen);
     StartingPlanes start = starting_planes(map, options_.max_extent_m, options_.outline_cell_m);
     losses_.planes_refused += start.refused;
-    coarsened_ += start.coarsened;
+    work_.coarsened += start.coarsened;
     for (PlaneEstimate& plane : start.planes) planes_.start_from(std::move(plane));
     derived_.start_from(map);
     rebuild();
@@ -77,7 +60,7 @@ void PlaneMapper::add(const Keyframe& keyframe, const Pose& world_from_camera) {
 }
 
 bool PlaneMapper::add(const Look& look) {
-    const KeyframeStore::Looked looked = keyframes_.add(look, losses_);
+    const Looked looked = keyframes_.add(look, losses_);
     if (looked.view == nullptr || !looked.view->world_from_camera) return false;
     settled_ = false;
     if (looked.is_news) {
@@ -112,25 +95,13 @@ void PlaneMapper::update(const KeyframeTrajectory& trajectory) {
 void PlaneMapper::absorb(PlaneMapper&& other) {
     keyframes_.absorb(std::move(other.keyframes_));
     losses_ += other.losses_;
-    folded_ += other.folded_;
-    replaced_ += other.replaced_;
-    rebuilds_ += other.rebuilds_;
+    work_ += other.work_;
     settled_ = false;
     absorbed_ = true;
 }
 
 void PlaneMapper::restore_ids(const Surfaces& surfaces) {
-    for (auto& [id, keyframe] : keyframes_.keyframes())
-        for (StoredRegion& region : keyframe.regions) region.plane = -1;
-    for (const KeyframeSurfaces& of : surfaces.keyframes) {
-        for (const int plane : of.planes) planes_.reserve_id(plane);
-        const auto known = keyframes_.keyframes().find(of.id);
-        if (known == keyframes_.keyframes().end()) continue;
-        for (StoredRegion& region : known->second.regions) {
-            const auto number = static_cast<std::size_t>(region.number);
-            if (region.number >= 0 && number < of.planes.size()) region.plane = of.planes[number];
-        }
-    }
+    recall_surfaces(surfaces, keyframes_, planes_);
     rebuild();
     refresh();
     infer();
@@ -164,7 +135,7 @@ void PlaneMapper::fold() {
         planes_.fold(id, keyframe);
         for_each_view(keyframe, [&](const StoredKeyframe& view) { seen_before_.look(Viewpoint(view)); });
         keyframes_.retire_oldest();
-        ++folded_;
+        ++work_.folded;
     }
 }
 
@@ -176,13 +147,13 @@ void PlaneMapper::hand_over_replaced(const KeyframeTrajectory& trajectory) {
                   [&](const StoredRegion& r) { return planes_.model().reliability(r, gone.noise).sigma_m; });
         keyframes_.redirect_looks(gone, *heirs.front());
         hand_over_looks(std::move(gone), *heirs.front());
-        ++replaced_;
+        ++work_.replaced;
         settled_ = false;
     }
 }
 
 void PlaneMapper::rebuild() {
-    ++rebuilds_;
+    ++work_.rebuilds;
     planes_.rebuild(keyframes_);
     for (const auto& [id, keyframe] : keyframes_.keyframes())
         if (keyframe.world_from_camera) derived_.seen_at(keyframe.utime);
@@ -194,40 +165,12 @@ void PlaneMapper::infer() {
     derived_.infer(options_.infer_hidden ? viewpoints(keyframes_) : std::vector<Viewpoint>());
 }
 
-Moments PlaneMapper::moments(int plane_id) const {
-    for (const PlaneEstimate& plane : planes_.estimates())
-        if (plane.id == plane_id) return plane.moments;
-    return {};
-}
-
 Surfaces PlaneMapper::surfaces() const {
-    Surfaces surfaces;
-    surfaces.utime = map().utime;
-    for (const auto& [id, keyframe] : keyframes_.keyframes()) {
-        if (!keyframe.world_from_camera) continue;
-        KeyframeSurfaces& of = surfaces.keyframes.emplace_back();
-        of.id = id;
-        for (const StoredRegion& region : keyframe.regions) {
-            if (region.number < 0) continue;
-            const auto number = static_cast<std::size_t>(region.number);
-            if (of.planes.size() <= number) of.planes.resize(number + 1, -1);
-            of.planes[number] = region.plane;
-        }
-    }
-    return surfaces;
+    return surfaces_of(keyframes_, map().utime);
 }
 
 SeenSpace PlaneMapper::seen_space(const std::function<bool()>& goes_on) const {
-    constexpr std::size_t kPasses = 16;  // so that those that are looked at are spread over the map
-    SeenThrough seen = seen_before_;
-    const std::vector<Viewpoint> views = viewpoints(keyframes_);
-    for (std::size_t pass = 0; pass < kPasses; ++pass) {
-        for (std::size_t i = pass; i < views.size(); i += kPasses) {
-            if (goes_on && !goes_on()) return seen.space();
-            seen.look(views[i]);
-        }
-    }
-    return seen.space();
+    return seen_through(seen_before_, viewpoints(keyframes_), goes_on);
 }
 
 std::size_t PlaneMapper::working_bytes() const {

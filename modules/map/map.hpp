@@ -16,6 +16,7 @@
 #include "map/derived_map.hpp"
 #include "map/keyframe_store.hpp"
 #include "map/map_losses.hpp"
+#include "map/map_work.hpp"
 #include "map/options.hpp"
 #include "map/planes.hpp"
 #include "map/seen_through.hpp"
@@ -47,14 +48,14 @@ class PlaneMapper {
                          std::shared_ptr<ToldUp> told = std::make_shared<ToldUp>());
 
     /// Starts from a finished map, in its world frame: its planes keep their ids and grow on. Call it first.
-    /// Planes that are larger than max_extent_m, or further out than 100 km, count in rejected(). The shapes
+    /// Planes that are larger than max_extent_m, or further out than 100 km, count as lost. The shapes
     /// of a very large map go on in coarser cells, the largest first, so that its rasters take 128 MB (a
-    /// rebuild holds them twice); such planes count in coarsened(). What was seen to be empty stays so.
+    /// rebuild holds them twice); such planes count in MapWork. What was seen to be empty stays so.
     void start_from(const PlaneMap& map, const SeenSpace& seen = {});
 
     /// Takes a keyframe; it waits if no trajectory has named its pose yet. Regions that are invalid
     /// (is_valid(PlanarRegion)), whose moments determine no plane, that reach further than 25 m or
-    /// max_extent_m / 2 from their middle, and those after the 256th are counted in rejected() and left out.
+    /// max_extent_m / 2 from their middle, and those after the 256th are counted in losses() and left out.
     /// A keyframe with a known id replaces the earlier one.
     void add(const Keyframe& keyframe);
     /// Takes a keyframe with its pose; an invalid pose is ignored and the keyframe waits.
@@ -108,33 +109,22 @@ class PlaneMapper {
     /// left unknown. Empty: all of them.
     SeenSpace seen_space(const std::function<bool()>& goes_on = {}) const;
 
-    /// Exact moments of a plane's points, world frame; zero for an unknown id, and of a plane of start_from()
-    /// those of points spread evenly over it.
-    Moments moments(int plane_id) const;
+    /// What map() is derived from, with the exact moments of all points, world frame; of a plane of
+    /// start_from() those of points spread evenly over it.
+    const std::vector<PlaneEstimate>& estimates() const { return planes_.estimates(); }
     /// Which planes the regions of the keyframes in the map are part of, as of the last rebuild or since.
     Surfaces surfaces() const;
     /// Ids of the keyframes that saw each plane, ascending, by the plane's id.
     std::map<int, std::vector<int>> sightings() const { return keyframes_.sightings(); }
     /// Keyframes that have no pose yet: at most 4096, then the oldest is dropped.
     std::size_t waiting() const { return keyframes_.waiting(); }
-    std::size_t dropped() const { return losses_.keyframes_unplaced; }
-    /// Regions and planes left out so far.
-    std::size_t rejected() const {
-        return losses_.regions_refused + losses_.regions_too_many + losses_.planes_refused;
-    }
     const MapLosses& losses() const { return losses_; }
     bool has_keyframe(int id) const { return keyframes_.keyframes().contains(id); }
-    /// Keyframes that are kept, and those whose regions went over to others.
+    /// Keyframes that are kept.
     std::size_t keyframes() const { return keyframes_.keyframes().size(); }
-    std::size_t replaced() const { return replaced_; }
-    /// Planes of start_from() whose shape goes on in cells coarser than outline_cell_m.
-    std::size_t coarsened() const { return coarsened_; }
+    const MapWork& work() const { return work_; }
     /// True if so many planes meet one another that map() does not hold all points where three do.
     bool left_out_corners() const { return derived_.left_out_points(); }
-    /// Keyframes whose regions were folded into the planes (MapOptions::fold_after).
-    std::size_t folded() const { return folded_; }
-    /// How often the whole map was rebuilt.
-    std::size_t rebuilds() const { return rebuilds_; }
 
   private:
     void place(int keyframe_id);
@@ -151,7 +141,7 @@ class PlaneMapper {
     SeenThrough seen_before_;  ///< of what keyframes_ does not hold any more
     std::shared_ptr<ToldUp> told_;
     MapLosses losses_;
-    std::size_t coarsened_ = 0, folded_ = 0, replaced_ = 0, rebuilds_ = 0;
+    MapWork work_;
     bool settled_ = true;    ///< nothing came since the last rebuild
     bool absorbed_ = false;  ///< another mapper's keyframes, which are in no plane yet
 };

@@ -34,8 +34,10 @@ Stored read(const std::filesystem::path& file) {
     messages::LogReader log(file);
     Stored stored;
     for (messages::LogEvent event; log.next(event);) {
-        if (event.channel == messages::channels::kMap) stored = {std::move(event.bytes), {}};
-        if (event.channel == messages::channels::kSeenSpace) stored.seen = std::move(event.bytes);
+        if (event.channel == messages::channels::kMap)
+            stored = {std::move(event.bytes), {}};
+        else if (event.channel == messages::channels::kSeenSpace)
+            stored.seen = std::move(event.bytes);
     }
     if (log.truncated()) throw std::runtime_error(file.string() + ": is cut short");
     if (log.bytes_skipped() > 0)

@@ -27,7 +27,7 @@ MapShell::MapShell(messages::Bus& bus, const MapShellOptions& options)
         maps_.start_from(read_plane_map(options.start), read_seen_space(options.start));
     tell_losses();
     status_.lost("fine edges of planes, since the map to start from is very large",
-                 static_cast<std::int64_t>(mapper().coarsened()));
+                 static_cast<std::int64_t>(mapper().work().coarsened));
     if (!options.journal.empty()) {
         journal_ = std::make_unique<MapJournal>(options.journal);
         resume();

@@ -22,8 +22,7 @@ struct Corners {
     }
     double area() const {
         double twice = 0;
-        for (std::size_t i = 0, j = count - 1; i < count; j = i++)
-            twice += p[j].x() * p[i].y() - p[j].y() * p[i].x();
+        for (std::size_t i = 0, j = count - 1; i < count; j = i++) twice += cross(p[j], p[i]);
         return 0.5 * twice;
     }
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // When two planar regions are the same plane of the world: the rules of paper section 2.3. Others ask what
 // looks alike and is not: segmentation/merging whether two parts of one image fit a common plane within the
-// noise, odometry which region of the keyframe a point lies on, graph/landmarks and graph/verification what
+// noise, odometry which region of the keyframe a point lies on, graph/landmarks and places/verification what
 // may hold two poses together, map/hand_over which of regions known to be one plane covers another.
 #pragma once
 
@@ -11,11 +11,11 @@
 
 namespace planemap::map {
 
-/// Thresholds of paper section 2.3.
+/// Thresholds of paper section 2.3, whose own values are in core/geometry/same_plane.hpp.
 struct MergeRules {
-    double angle_rad = 0.1745;  ///< between the normals; opposite sides of a wall differ by pi
-    double distance_m = 0.05;   ///< between the planes, where the regions are
-    double gap_m = 0.5;         ///< between the boxes, within the plane
+    double angle_rad;   ///< between the normals; opposite sides of a wall differ by pi
+    double distance_m;  ///< between the planes, where the regions are
+    double gap_m;       ///< between the boxes, within the plane
 };
 
 /// How one plane lies to another.

@@ -26,8 +26,8 @@ struct Observation {
 /// What an observation counts for, by the noise at its depth of the sensor that saw it and the error of
 /// poses.
 struct ObservationModel {
-    double pose_sigma_m = 0.02;  ///< below it, less sensor noise gains no weight
-    double agreement_m = 0.01;   ///< an observation off its plane by much more (and the noise) loses weight
+    double pose_sigma_m;  ///< below it, less sensor noise gains no weight
+    double agreement_m;   ///< an observation off its plane by much more (and the noise) loses weight
 
     /// Inverse variance of a region about its plane, relative to a noise-free sensor: 0 to 1.
     double weight(const StoredRegion& region_camera, const DepthNoise& noise) const;

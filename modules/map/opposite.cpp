@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/geometry/bitmap.hpp"
 #include "core/geometry/box.hpp"
+#include "core/geometry/outline_frame.hpp"
 
 namespace planemap::map {
 
@@ -13,28 +15,21 @@ namespace {
 constexpr double kCells = 10000;       // of the common part of the outlines' bounds
 constexpr double kLeastCell_m = 1e-3;  // what outlines are stored to
 
+/// A plane's outline in the x and y of a view.
 Outline seen(const MapPlane& plane, const Pose& view_from_world) {
-    Outline outline = plane.outline.rings();
-    const Pose view_from_plane = view_from_world * plane.world_from_plane();
-    for (Ring& ring : outline.rings)
-        for (Eigen::Vector2d& v : ring) v = (view_from_plane * Eigen::Vector3d(v.x(), v.y(), 0)).head<2>();
-    return outline;
+    return projected(view_from_world * plane.world_from_plane(), plane.outline.rings());
 }
 
-Eigen::AlignedBox2d bounds_of(const Outline& outline) {
-    Eigen::AlignedBox2d bounds;
-    for (const Ring& ring : outline.rings)
-        for (const Eigen::Vector2d& v : ring) bounds.extend(v);
-    return bounds;
-}
-
-/// The outline in a raster of cells from `low` on.
-Mask drawn(Outline outline, const Eigen::Vector2d& low, double cell_m, int width, int height) {
-    for (Ring& ring : outline.rings)
-        for (Eigen::Vector2d& v : ring) v = (v - low) / cell_m;
-    Mask mask(width, height);
-    fill(outline, mask);
-    return mask;
+/// The cells of an outline in a raster of cells from `low` on.
+Bitmap drawn(const Outline& outline, const Eigen::Vector2d& low, double cell_m, int width, int height) {
+    FlatPolygon polygon;
+    polygon.assign(outline);
+    Bitmap cells(0, 0, (width + 63) / 64, height);
+    const Eigen::Vector2d first_centre(0.5, 0.5);
+    cells.draw(polygon, [&](const Eigen::Vector2d& v) -> Eigen::Vector2d {
+        return (v - low) / cell_m - first_centre;
+    });
+    return cells;
 }
 
 }  // namespace
@@ -51,18 +46,18 @@ Opposite opposite_of(const MapPlane& a, const MapPlane& b, const Eigen::Vector3d
     opposite.world_from_view.translation() = a.center.cast<double>();
     const Pose view_from_world = opposite.world_from_view.inverse(Eigen::Isometry);
     const Outline seen_a = seen(a, view_from_world), seen_b = seen(b, view_from_world);
-    const Eigen::AlignedBox2d common = bounds_of(seen_a).intersection(bounds_of(seen_b));
+    const Eigen::AlignedBox2d common = bounds(seen_a).intersection(bounds(seen_b));
     if (common.isEmpty() || !common.min().allFinite() || !common.max().allFinite()) return opposite;
     const Eigen::Vector2d size = common.sizes();
     opposite.cell_m =
         std::max({kLeastCell_m, std::sqrt(size.x() * size.y() / kCells), size.maxCoeff() / kCells});
     const auto count = [&](double length) { return static_cast<int>(std::ceil(length / opposite.cell_m)); };
     const int width = count(size.x()), height = count(size.y());
-    const Mask mask_a = drawn(seen_a, common.min(), opposite.cell_m, width, height),
-               mask_b = drawn(seen_b, common.min(), opposite.cell_m, width, height);
+    Bitmap both = drawn(seen_a, common.min(), opposite.cell_m, width, height);
+    both &= drawn(seen_b, common.min(), opposite.cell_m, width, height);
     for (int y = 0; y < height; ++y) {
         for (int x = 0; x < width; ++x) {
-            if (mask_a.at(x, y) && mask_b.at(x, y))
+            if (both.at(x, y))
                 opposite.cells.push_back(common.min() + opposite.cell_m * Eigen::Vector2d(x + 0.5, y + 0.5));
         }
     }

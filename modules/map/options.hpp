@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include "core/geometry/plane_intersection.hpp"
+#include "core/geometry/same_plane.hpp"
 #include "core/option_list.hpp"
 
 namespace planemap::map {
@@ -10,9 +12,9 @@ namespace planemap::map {
 /// Options of PlaneMapper; options_of() says what each is.
 struct MapOptions {
     std::string rules = "surfaces";
-    double merge_angle_deg = 10;
-    double merge_distance_m = 0.05;
-    double merge_gap_m = 0.5;
+    double merge_angle_deg = kSamePlane_deg;
+    double merge_distance_m = kSamePlaneDistance_m;
+    double merge_gap_m = kSamePlaneGap_m;
 
     double pose_sigma_m = 0.02;
     double agreement_m = 0.01;
@@ -23,7 +25,7 @@ struct MapOptions {
     double see_through_m = 0.05;
 
     double adjacency_gap_m = 0.15;
-    double adjacency_angle_deg = 15;
+    double adjacency_angle_deg = kParallel_deg;
     double adjacency_length_m = 0.25;
 
     double min_area_m2 = 0.05;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/geometry/outline_frame.hpp"
+
 namespace planemap::map {
 
 namespace {
@@ -21,19 +23,11 @@ double rms_to(const Plane& plane, const Moments& moments) {
     return std::sqrt(std::max(0.0, spread) + std::pow(plane.signed_distance(moments.mean()), 2));
 }
 
-/// An outline's x, y in frame a, seen along frame b's z in b's x, y.
-Outline transformed(const Pose& b_from_a, Outline outline) {
-    for (Ring& ring : outline.rings) {
-        for (Eigen::Vector2d& v : ring) v = (b_from_a * Eigen::Vector3d(v.x(), v.y(), 0)).head<2>();
-    }
-    return outline;
-}
-
 /// A wall and all that stands at it meet at some twenty lines. What could be a map and has hundreds of planes
 /// that all cross would take hours: of such a plane the longest lines count.
 constexpr std::size_t kMostLines = 64;
 
-/// The meetings in the x and y of the grid from which transformed() leads to the axes.
+/// The meetings in the x and y of the grid from which projected() leads to the axes.
 std::vector<MeetingLine> lines_in_grid(const std::vector<Meeting>& meetings, const Pose& axes_from_world,
                                        const Pose& axes_from_grid) {
     const Eigen::Matrix2d grid_from_axes = axes_from_grid.linear().topLeftCorner<2, 2>().inverse();
@@ -55,14 +49,8 @@ std::vector<MeetingLine> lines_in_grid(const std::vector<Meeting>& meetings, con
 
 /// Gives a region the box along the axes of a frame, around the outline, and the outline in it.
 void set_outline(PlanarRegion& region, const Pose& world_from_axes, Outline outline_axes) {
-    Eigen::Vector2d low = Eigen::Vector2d::Constant(1e300), high = -low;
-    for (const Ring& ring : outline_axes.rings) {
-        for (const Eigen::Vector2d& v : ring) {
-            low = low.cwiseMin(v);
-            high = high.cwiseMax(v);
-        }
-    }
-    const Eigen::Vector2d middle = 0.5 * (low + high), half = 0.5 * (high - low);
+    const Eigen::AlignedBox2d box = bounds(outline_axes);
+    const Eigen::Vector2d middle = 0.5 * (box.min() + box.max()), half = 0.5 * (box.max() - box.min());
     for (Ring& ring : outline_axes.rings) {
         for (Eigen::Vector2d& v : ring) v -= middle;
     }
@@ -81,9 +69,9 @@ std::optional<MapPlane> plane_of(const PlaneEstimate& estimate, const Outline& o
     region.moments = estimate.moments;
     region.rms = rms_to(estimate.plane, estimate.moments);
     const Pose& world_from_axes = estimate.box.frame_from_box;  // the principal ones
-    set_outline(region, world_from_axes,
-                transformed(world_from_axes.inverse(Eigen::Isometry) * estimate.grid.world_from_grid(),
-                            outline_grid));
+    set_outline(
+        region, world_from_axes,
+        projected(world_from_axes.inverse(Eigen::Isometry) * estimate.grid.world_from_grid(), outline_grid));
     const MapPlane derived(estimate.id, region, static_cast<std::size_t>(estimate.keyframes));
     const double least = estimate.keyframes < 2 ? rules.min_single_m2 : 0;
     if (!(derived.area > 0) || static_cast<double>(derived.area) < std::max(least, rules.min_area_m2))

@@ -13,9 +13,9 @@ namespace planemap::map {
 /// Which estimates become planes of a map, and with what outline.
 struct DerivationRules {
     OutlineOptions outline;
-    double min_area_m2 = 0.05;
-    double min_single_m2 = 0.25;  ///< the same for planes that only one keyframe saw
-    int min_keyframes = 1;
+    double min_area_m2;
+    double min_single_m2;  ///< the same for planes that only one keyframe saw
+    int min_keyframes;
 };
 
 /// Where another plane meets one, world frame.

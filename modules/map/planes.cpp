@@ -5,23 +5,13 @@
 #include <map>
 #include <utility>
 
-#include "core/angle.hpp"
+#include "map/evidence_blocks.hpp"
 #include "map/rebuild.hpp"
+#include "map/rules.hpp"
 
 namespace planemap::map {
 
 namespace {
-
-MergeRules merge_rules(const MapOptions& options) {
-    return {radians(options.merge_angle_deg), options.merge_distance_m, options.merge_gap_m};
-}
-
-std::optional<SurfaceRules> surface_rules(const MapOptions& options) {
-    if (!options.unites_surfaces()) return std::nullopt;
-    SurfaceRules rules;
-    rules.pose_sigma_m = options.pose_sigma_m;
-    return rules;
-}
 
 /// The newest of the keyframes near a view and their looks, the newest first: whether what is new in it was
 /// looked through before.
@@ -47,7 +37,7 @@ std::vector<Viewpoint> views_before(const StoredKeyframe& view, KeyframeStore& s
 Planes::Planes(const MapOptions& options, PlaneIds ids)
     : threads_(options.threads),
       surfaces_(surface_rules(options)),
-      joiner_({options.pose_sigma_m, options.agreement_m}, options.outline_cell_m),
+      joiner_(observation_model(options), options.outline_cell_m),
       free_space_(options.see_through_m),
       planes_(merge_rules(options), options.max_extent_m),
       folded_(merge_rules(options), options.max_extent_m),
@@ -66,7 +56,7 @@ void Planes::integrate(int keyframe_id, KeyframeStore& store, MapLosses& losses)
 void Planes::integrate(int keyframe_id, StoredKeyframe& view, KeyframeStore& store, MapLosses& losses) {
     const std::vector<Viewpoint> before = views_before(view, store);
     std::vector<std::size_t> grown;
-    std::vector<EvidenceGrid::Block> fresh;
+    std::vector<EvidenceBlock> fresh;
     for (StoredRegion& region : view.regions) {
         region.plane = -1;
         const Observation seen(view, region);

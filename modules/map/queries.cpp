@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/geometry/outline_frame.hpp"
 #include "core/geometry/segment.hpp"
 
 namespace planemap::map {
@@ -95,11 +96,10 @@ MapQueries::MapQueries(const PlaneMap& map, SeenSpace seen)
         entry.world_from_plane = plane.world_from_plane();
         entry.plane_from_world = entry.world_from_plane.inverse(Eigen::Isometry);
         entry.outline = plane.outline.rings();
+        entry.bounds = planemap::bounds(entry.outline);
         for (const Ring& ring : entry.outline.rings) {
-            for (const Eigen::Vector2d& v : ring) {
-                entry.bounds.extend(v);
+            for (const Eigen::Vector2d& v : ring)
                 entry.bounds_world.extend(entry.world_from_plane * on_plane(v));
-            }
         }
         if (entry.outline.empty() || !is_valid(entry.world_from_plane)) continue;
         entries_.push_back(std::move(entry));

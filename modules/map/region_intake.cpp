@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/geometry/packed_outline.hpp"
+
 namespace planemap::map {
 
 namespace {
@@ -13,7 +15,6 @@ namespace {
 /// memory.
 constexpr double kMaxRegionReach_m = 25;
 constexpr std::size_t kMaxRegions = 256;
-constexpr std::size_t kMaxRingVertices = 32767;
 constexpr double kMaxPoints = 1e9;
 
 }  // namespace

@@ -34,7 +34,7 @@ void RegionJoiner::outline_in_grid(PlaneEstimate& plane, const Pose& world_from_
 }
 
 int RegionJoiner::draw(PlaneEstimate& plane, const Pose& world_from_box, const StoredRegion& region,
-                       const StoredKeyframe& keyframe, int looks, std::vector<EvidenceGrid::Block>* fresh) {
+                       const StoredKeyframe& keyframe, int looks, std::vector<EvidenceBlock>* fresh) {
     outline_in_grid(plane, world_from_box, region, keyframe);
     return plane.grid.add(polygon_, model_.strength(region, keyframe.noise), looks, fresh);
 }

@@ -29,7 +29,7 @@ class RegionJoiner {
     /// Draws a region, which `looks` more looks saw, into the shape of its plane; returns how many cells came
     /// to it. Blocks of cells that were never seen before are added to `fresh`.
     int draw(PlaneEstimate& plane, const Pose& world_from_box, const StoredRegion& region,
-             const StoredKeyframe& keyframe, int looks, std::vector<EvidenceGrid::Block>* fresh = nullptr);
+             const StoredKeyframe& keyframe, int looks, std::vector<EvidenceBlock>* fresh = nullptr);
     /// For a shape that is made anew: adds the region's support, and returns its cells with when they were
     /// seen.
     SeenCells draw_support(PlaneEstimate& plane, const Pose& world_from_box, const StoredRegion& region,

@@ -103,10 +103,7 @@ RoomView::RoomView(std::span<const MapPlane> planes) {
     for (const MapPlane& plane : planes) {
         const double length = plane.normal.cast<double>().norm();
         const double weight = trust(plane.keyframes) * std::sqrt(static_cast<double>(plane.area));
-        const bool is_plane = std::abs(length - 1) < 1e-3 && weight > 0 && std::isfinite(weight) &&
-                              plane.center.allFinite() && plane.half_extents.allFinite() &&
-                              std::isfinite(plane.angle);
-        if (!is_plane) continue;
+        if (!is_plane(plane) || !(weight > 0)) continue;
         planes_.push_back(
             {plane.normal.cast<double>() / length, plane.center.cast<double>(), corners_of(plane), weight});
         sum += weight;

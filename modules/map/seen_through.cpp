@@ -123,4 +123,16 @@ std::size_t SeenThrough::memory_bytes() const {
     return blocks_.capacity() * sizeof(LookedAt) + index_.size() * kEntry;
 }
 
+SeenSpace seen_through(SeenThrough known, const std::vector<Viewpoint>& views,
+                       const std::function<bool()>& goes_on) {
+    constexpr std::size_t kPasses = 16;  // so that those that are looked at are spread over the map
+    for (std::size_t pass = 0; pass < kPasses; ++pass) {
+        for (std::size_t i = pass; i < views.size(); i += kPasses) {
+            if (goes_on && !goes_on()) return known.space();
+            known.look(views[i]);
+        }
+    }
+    return known.space();
+}
+
 }  // namespace planemap::map

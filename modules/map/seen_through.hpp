@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <unordered_map>
 #include <vector>
 
@@ -45,5 +46,11 @@ class SeenThrough {
     std::vector<LookedAt> blocks_;
     std::unordered_map<std::uint64_t, std::size_t> index_;  ///< of blocks_, by where they are
 };
+
+/// What views saw through besides what is known already. So many that there is no time for all are looked at
+/// spread evenly: `goes_on` is asked before each, and when it says no, space that only others saw is left
+/// unknown. Empty: all of them.
+SeenSpace seen_through(SeenThrough known, const std::vector<Viewpoint>& views,
+                       const std::function<bool()>& goes_on = {});
 
 }  // namespace planemap::map

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "map/support.hpp"
 
 namespace planemap::map {
@@ -69,9 +69,7 @@ std::vector<Standing> standing_planes(PlaneMap& map, const Eigen::Vector3d& up, 
     std::vector<Standing> planes;
     planes.reserve(map.planes.size());
     for (MapPlane& plane : map.planes) {
-        const bool is_plane = std::abs(plane.normal.norm() - 1) < 1e-3f && plane.center.allFinite() &&
-                              plane.half_extents.allFinite();
-        if (!is_plane || !std::isfinite(plane.area) || !std::isfinite(plane.angle)) continue;
+        if (!is_plane(plane)) continue;
         const Pose world_from_plane = plane.world_from_plane();
         const Eigen::Vector3d slope = world_from_plane.linear().transpose() * up;
         Standing s;

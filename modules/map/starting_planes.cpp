@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/geometry/outline_frame.hpp"
+
 namespace planemap::map {
 
 namespace {
@@ -13,17 +15,11 @@ namespace {
 constexpr double kMaxCells = 1 << 27;
 constexpr int kMaxId = 1 << 30;
 
-/// Of the rectangle around a plane's outline, which its raster covers.
+/// Of the rectangle around a plane's outline and its middle, which its raster covers.
 double raster_area(const MapPlane& plane) {
-    Eigen::Vector2d low = Eigen::Vector2d::Zero(), high = low;
-    const Outline outline = plane.outline.rings();
-    for (const Ring& ring : outline.rings) {
-        for (const Eigen::Vector2d& v : ring) {
-            low = low.cwiseMin(v);
-            high = high.cwiseMax(v);
-        }
-    }
-    return (high - low).prod();
+    const Eigen::AlignedBox2d covered =
+        bounds(plane.outline.rings()).extend(Eigen::Vector2d(Eigen::Vector2d::Zero()));
+    return (covered.max() - covered.min()).prod();
 }
 
 /// The most cells that a raster may have, so that all of them keep within kMaxCells: small planes take what

@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "core/geometry/outline_frame.hpp"
 #include "core/geometry/packed_outline.hpp"
 #include "core/heap_bytes.hpp"
 
@@ -19,14 +20,6 @@ Pose level_box(const PlanarRegion& region) {
     frame.linear() = plane_axes(region.plane.normal, region.box.frame_from_box.linear().col(0));
     frame.translation() = region.plane.project(region.box.frame_from_box.translation());
     return frame;
-}
-
-/// Seen along the frame's z.
-Outline in_frame(const Pose& frame_from_outline, Outline outline) {
-    for (Ring& ring : outline.rings) {
-        for (Eigen::Vector2d& v : ring) v = (frame_from_outline * Eigen::Vector3d(v.x(), v.y(), 0)).head<2>();
-    }
-    return outline;
 }
 
 /// Moments in the camera frame, kept in the axes of the region's box.
@@ -58,7 +51,7 @@ StoredKeyframe stored(std::int64_t utime, const std::vector<PlanarRegion>& regio
         s.half_extents = region.box.half_extents.head<2>().cast<float>();
         s.first = static_cast<std::uint32_t>(keyframe.vertices.size());
         const Pose box_from_outline = camera_from_box.inverse(Eigen::Isometry) * region.box.frame_from_box;
-        s.unit = pack(in_frame(box_from_outline, region.outline), keyframe.vertices);
+        s.unit = pack(projected(box_from_outline, region.outline), keyframe.vertices);
         s.last = static_cast<std::uint32_t>(keyframe.vertices.size());
     }
     keyframe.vertices.shrink_to_fit();

@@ -18,6 +18,10 @@ constexpr double kMaxCoordinate_m = 1e5;
 inline bool is_near_origin(const Eigen::Vector3d& p_world) {
     return p_world.norm() <= kMaxCoordinate_m;  // not NaN
 }
+/// Whether what a camera saw from there can be in a map.
+inline bool is_placeable(const Pose& world_from_camera) {
+    return is_valid(world_from_camera) && is_near_origin(world_from_camera.translation());
+}
 
 /// A planar region in 112 bytes and 4 a vertex of its outline, camera frame. Single precision about the
 /// region's own centre and axes: a micrometre at ten metres.

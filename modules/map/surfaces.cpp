@@ -8,7 +8,9 @@
 #include <optional>
 #include <set>
 
+#include "core/geometry/outline_frame.hpp"
 #include "map/evidence_shape.hpp"
+#include "map/options.hpp"
 
 namespace planemap::map {
 
@@ -17,6 +19,10 @@ namespace {
 constexpr double kCell_m = 0.05;    // of the rasters that shapes are compared on
 constexpr double kHopeless = 1.5;   // times what may be, between planes where their boxes overlap
 constexpr double kMostCells = 4e6;  // of one of them: beyond, its cells are coarser
+/// How the shape of what a plane brought along without regions is read. It is drawn in cells of kCell_m and
+/// counted, not shown: nearer to what was seen than a cell is near enough, whatever outlines are asked for.
+constexpr double kShapeTolerance_m = 0.03;
+const OutlineOptions kShape{MapOptions::outline_min_support, 0.01, kShapeTolerance_m, 0};
 
 /// How far a plane's views may be off along its normal by what depth errs.
 struct DepthError {
@@ -164,11 +170,7 @@ class SurfaceUnion {
         const EvidenceGrid& grid = planes_.estimates()[plane].grid;
         if (grid.empty()) return shape;
         const Pose frame_from_grid = raster.frame_from_world * grid.world_from_grid();
-        Outline outline = outline_of(grid, {});
-        for (Ring& ring : outline.rings)
-            for (Eigen::Vector2d& v : ring)
-                v = (frame_from_grid * Eigen::Vector3d(v.x(), v.y(), 0)).head<2>();
-        polygon_.assign(outline);
+        polygon_.assign(projected(frame_from_grid, outline_of(grid, kShape)));
         add_to(shape, scratch_, polygon_, raster);
         return shape;
     }

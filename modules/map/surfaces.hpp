@@ -25,8 +25,8 @@ struct SeenRegion {
 
 /// When two planes that overlap are one surface, for all that poses and depth err.
 struct SurfaceRules {
-    double angle_rad = 0.2094;   ///< between them: 12 deg
-    double pose_sigma_m = 0.02;  ///< of keyframes
+    double angle_rad = 0.2094;  ///< between them: 12 deg
+    double pose_sigma_m;        ///< of keyframes
     double range_bias = kRangeBias;
     double sigmas = 3;           ///< of the errors of both planes, by which they may be apart
     double most_apart_m = 0.15;  ///< whatever the errors

@@ -5,7 +5,7 @@
 #include <iterator>
 #include <set>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 
 namespace planemap::octomap {
 

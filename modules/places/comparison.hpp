@@ -5,14 +5,15 @@
 #include <span>
 #include <vector>
 
+#include "core/geometry/same_plane.hpp"
 #include "places/keyframe_view.hpp"
 #include "places/verification_options.hpp"
 
 namespace planemap::places {
 
-constexpr double kInlierSigmas = 3.5;    ///< of two points' distance, when they are one
-constexpr double kPlaneDistance = 0.05;  ///< metres between planes that are one, as the map merges them
-                                         ///< (paper section 2.3)
+constexpr double kInlierSigmas = 3.5;  ///< of two points' distance, when they are one
+/// Metres between planes that are one, as the map merges them (paper section 2.3).
+constexpr double kPlaneDistance = kSamePlaneDistance_m;
 
 /// Standard deviation of depth at z in the noisier of both views.
 double worst_sigma(const KeyframeView& a, const KeyframeView& b, double z);

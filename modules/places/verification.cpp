@@ -10,15 +10,16 @@
 #include <random>
 #include <utility>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "core/geometry/rigid_fit.hpp"
+#include "core/geometry/same_plane.hpp"
 #include "places/comparison.hpp"
 
 namespace planemap::places {
 
 namespace {
 
-constexpr double kPlaneAngle = radians(10);  // as the map merges planes (paper section 2.3)
+constexpr double kPlaneAngle = radians(kSamePlane_deg);  // as the map merges planes (paper section 2.3)
 
 constexpr int kMostLike = 8;         // features that one is compared with, where many are alike
 constexpr int kLeastRival = 12;      // points that agree by chance are fewer

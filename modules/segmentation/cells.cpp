@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "segmentation/cell_grid.hpp"
 #include "segmentation/growing.hpp"
 #include "segmentation/merging.hpp"

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 
 namespace planemap::segmentation {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "core/rounding.hpp"
 #include "simulator/sensor_model.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "simulator/looks.hpp"
 
 namespace planemap::simulator {

@@ -2,7 +2,7 @@
 // What other worlds take from the office.
 #pragma once
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "simulator/world.hpp"
 
 namespace planemap::simulator {

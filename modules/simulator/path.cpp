@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "simulator/random.hpp"
 
 namespace planemap::simulator {

@@ -2,7 +2,7 @@
 // Twenty rooms on both sides of a corridor.
 #include <cmath>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "simulator/looks.hpp"
 #include "simulator/random.hpp"
 

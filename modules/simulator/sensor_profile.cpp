@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "simulator/random.hpp"
 
 namespace planemap::simulator {

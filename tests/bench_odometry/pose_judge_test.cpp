@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 
 namespace planemap::bench_odometry {
 namespace {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "bench_segmentation/two_walls.hpp"
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 
 namespace planemap::bench {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "bench_segmentation/truth.hpp"
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "segmentation/scene.hpp"
 
 namespace planemap::bench {

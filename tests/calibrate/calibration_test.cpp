@@ -8,6 +8,7 @@
 
 #include "core/camera_file.hpp"
 #include "core/depth_correction.hpp"
+#include "core/offset_at.hpp"
 #include "simulator/simulated_source.hpp"
 #include "tools/programs.hpp"
 
@@ -26,7 +27,7 @@ struct CalibrateTest : test::Programs {
         for (int v = 5; v < depth.height; v += 10) {
             for (int u = 5; u < depth.width; u += 10) {
                 const double read = source.bias() ? source.bias()->read(u, v, range_m) : range_m;
-                sum += std::pow(read / (1 + read * offset_at(correction, depth, u, v)) - range_m, 2);
+                sum += std::pow(read / (1 + read * test::offset_at(correction, depth, u, v)) - range_m, 2);
                 ++count;
             }
         }

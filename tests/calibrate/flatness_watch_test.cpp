@@ -6,7 +6,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "core/depth_correction.hpp"
+#include "core/offset_at.hpp"
 
 namespace planemap {
 namespace {
@@ -26,7 +26,7 @@ DepthImage wall(const CameraInfo& camera, const Plane& plane, const DepthCorrect
     for (int v = 0; v < depth.height; ++v) {
         for (int u = 0; u < depth.width; ++u) {
             const double inverse = -plane.normal.dot(camera.depth.unproject(u, v, 1)) / plane.d;
-            const double sensed = 1 / (inverse - offset_at(field, camera.depth, u, v));
+            const double sensed = 1 / (inverse - test::offset_at(field, camera.depth, u, v));
             depth(u, v) = static_cast<std::uint16_t>(std::lround(sensed * camera.depth_units_per_metre));
         }
     }

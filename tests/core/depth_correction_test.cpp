@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/lens_distortion.hpp"
+#include "core/offset_at.hpp"
 
 namespace planemap {
 namespace {
@@ -44,9 +45,9 @@ TEST(DepthCorrection, WeightsAddUpToOneAndStayInTheField) {
 
 TEST(DepthCorrection, NodesAreAtTheImagesCornersAndTheFieldIsLinearBetween) {
     const PinholeCamera depth = camera_of(64, 48).depth;
-    EXPECT_NEAR(offset_at(ramp(), depth, -0.5, -0.5), ramp().offsets.front(), 1e-12);
-    EXPECT_NEAR(offset_at(ramp(), depth, 63.5, 47.5), ramp().offsets.back(), 1e-12);
-    EXPECT_NEAR(offset_at(ramp(), depth, 31.5, 23.5), 0.001 * 2 - 0.002 * 1.5, 1e-12);
+    EXPECT_NEAR(test::offset_at(ramp(), depth, -0.5, -0.5), ramp().offsets.front(), 1e-12);
+    EXPECT_NEAR(test::offset_at(ramp(), depth, 63.5, 47.5), ramp().offsets.back(), 1e-12);
+    EXPECT_NEAR(test::offset_at(ramp(), depth, 31.5, 23.5), 0.001 * 2 - 0.002 * 1.5, 1e-12);
 }
 
 TEST(DepthCorrection, NodesLieInTheImageThatTheLensDraws) {

@@ -6,12 +6,13 @@
 #include <numbers>
 #include <vector>
 
+#include "core/geometry/angle.hpp"
 #include "core/plane_map.hpp"
 #include "core/scene.hpp"
 
 namespace planemap::scene {
 
-constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kDegree = radians(1);
 
 /// A camera at a position that looks along `yaw` (about z, from x), `pitch` downwards.
 inline Pose looking(const Eigen::Vector3d& position, double yaw, double pitch) {

@@ -5,14 +5,14 @@
 
 #include <limits>
 
-#include "map/wall_and_plate.hpp"
+#include "core/wall_and_plate.hpp"
 
 namespace planemap {
 namespace {
 
-using map::samples::two_regions;
 using scene::facing;
 using scene::Rectangle;
+using scene::two_regions;
 
 TEST(Sight, TellsWhatIsSeenWhere) {
     const std::vector<PlanarRegion> regions = two_regions();

@@ -130,78 +130,106 @@ struct Registered {
     double mean = 0;  ///< in sigmas: negative is too near
 };
 
-inline Registered compare(const Scene& scene, const CameraInfo& info, const Sensed& sensed,
-                          const DepthImage& registered) {
-    Registered result;
-    const Pose depth_from_color = info.color_from_depth.inverse();
-    double squares = 0, sum = 0;
-    const double reach_u = 1.01 + 0.51 * info.depth.fx / info.color.fx,
-                 reach_v = 1.01 + 0.51 * info.depth.fy / info.color.fy;
-    // Readings around a pixel of the depth image that `holds` is true of; -1 as soon as it is false of one.
-    const auto around = [&](const Eigen::Vector2d& pixel, double by_u, double by_v, const auto& holds) {
+/// What of a registered image agrees with the scene, pixel by pixel.
+class Comparison {
+  public:
+    Comparison(const Scene& scene, const CameraInfo& info, const Sensed& sensed)
+        : scene_(scene),
+          info_(info),
+          sensed_(sensed),
+          depth_from_color_(info.color_from_depth.inverse()),
+          reach_u_(1.01 + 0.51 * info.depth.fx / info.color.fx),
+          reach_v_(1.01 + 0.51 * info.depth.fy / info.color.fy),
+          pieces_(pieces_in_color(scene, info)) {}
+
+    /// Takes the pixel at x, y with the depth z that the image has there, metres; 0: none.
+    void add(int x, int y, double z) {
+        const Eigen::Vector3d ray = info_.color.unproject(x, y, 1);
+        if (pieces_(x, y) >= 0 && is_alone(x, y)) add_inside(pieces_(x, y), ray, z);
+        if (z > 0) result_.beyond += !has_reading(depth_from_color_ * (z * ray).eval());
+    }
+    Registered result() const {
+        Registered result = result_;
+        const int filled = std::max(1, result.inside - result.holes);
+        result.rms = std::sqrt(squares_ / filled);
+        result.mean = sum_ / filled;
+        return result;
+    }
+
+  private:
+    /// Of the readings around a pixel of the depth image, how many `holds` is true of, and whether of all.
+    template <typename Holds>
+    std::pair<int, bool> around(const Eigen::Vector2d& pixel, const Holds& holds) const {
         int count = 0;
         bool all = true;
-        for (int v = static_cast<int>(std::ceil(pixel.y() - by_v)); v <= pixel.y() + by_v; ++v) {
-            for (int u = static_cast<int>(std::ceil(pixel.x() - by_u)); u <= pixel.x() + by_u; ++u) {
-                if (sensed.piece.contains(u, v) && holds(u, v))
+        for (int v = static_cast<int>(std::ceil(pixel.y() - reach_v_)); v <= pixel.y() + reach_v_; ++v) {
+            for (int u = static_cast<int>(std::ceil(pixel.x() - reach_u_)); u <= pixel.x() + reach_u_; ++u) {
+                if (sensed_.piece.contains(u, v) && holds(u, v))
                     ++count;
                 else
                     all = false;
             }
         }
-        return std::pair(count, all);
-    };
-    const Image<std::int8_t> pieces = pieces_in_color(scene, info);
-    // The pixel and all within a footprint of it see one surface.
-    const int near_x = static_cast<int>(std::ceil(info.color.fx / info.depth.fx)) + 1;
-    const int near_y = static_cast<int>(std::ceil(info.color.fy / info.depth.fy)) + 1;
-    const auto alone = [&](int x, int y) {
+        return {count, all};
+    }
+    /// The pixel and all within a footprint of it see one surface.
+    bool is_alone(int x, int y) const {
+        const int near_x = static_cast<int>(std::ceil(info_.color.fx / info_.depth.fx)) + 1;
+        const int near_y = static_cast<int>(std::ceil(info_.color.fy / info_.depth.fy)) + 1;
         for (int j = y - near_y; j <= y + near_y; ++j) {
             for (int i = x - near_x; i <= x + near_x; ++i)
-                if (pieces.contains(i, j) && pieces(i, j) != pieces(x, y)) return false;
+                if (pieces_.contains(i, j) && pieces_(i, j) != pieces_(x, y)) return false;
         }
         return true;
-    };
-    for (int y = 0; y < registered.height; ++y) {
-        for (int x = 0; x < registered.width; ++x) {
-            const Eigen::Vector3d ray = info.color.unproject(x, y, 1);
-            const double z = info.metres(registered(x, y));
-            if (pieces(x, y) >= 0 && alone(x, y)) {
-                const Plane& plane = scene.plane(pieces(x, y));
-                const double s = -plane.signed_distance(depth_from_color.translation()) /
-                                 plane.normal.dot(depth_from_color.linear() * ray);
-                const Eigen::Vector2d seen = info.depth.project(depth_from_color * (s * ray).eval());
-                const auto same = [&](int u, int v) { return sensed.piece(u, v) == pieces(x, y); };
-                if (around(seen, reach_u, reach_v, same).second) {
-                    ++result.inside;
-                    result.holes += registered(x, y) == 0;
-                    if (registered(x, y) != 0) {
-                        const double off = (z - s) / (info.noise.sigma(s) + 1 / info.depth_units_per_metre);
-                        result.wrong += std::abs(off) > 5;
-                        squares += off * off;
-                        sum += off;
-                    }
-                }
-            }
-            if (registered(x, y) == 0) continue;
-            const Eigen::Vector3d p = depth_from_color * (z * ray).eval();
-            const auto such = [&](int u, int v) {
-                if (sensed.piece(u, v) < 0) return false;
-                const Hit there = scene.look(Eigen::Vector3d::Zero(), info.depth.unproject(u, v, 1));
-                // Of such a depth: within the noise, and what its surface changes by over the footprint.
-                const Plane& plane = scene.plane(there.piece);
-                const Eigen::Vector2d pixel = info.depth.project(p);
-                const Eigen::Vector3d towards = info.depth.unproject(pixel.x(), pixel.y(), 1);
-                const double on_plane = -plane.d / plane.normal.dot(towards);
-                return std::abs(p.z() - on_plane) <= 6 * info.noise.sigma(p.z()) + 0.002;
-            };
-            result.beyond += around(info.depth.project(p), reach_u, reach_v, such).first == 0;
-        }
     }
-    const int filled = std::max(1, result.inside - result.holes);
-    result.rms = std::sqrt(squares / filled);
-    result.mean = sum / filled;
-    return result;
+    /// A pixel that sees the inside of a surface, if the depth camera sees that there too.
+    void add_inside(int piece, const Eigen::Vector3d& ray, double z) {
+        const Plane& plane = scene_.plane(piece);
+        const double s = -plane.signed_distance(depth_from_color_.translation()) /
+                         plane.normal.dot(depth_from_color_.linear() * ray);
+        const Eigen::Vector2d seen = info_.depth.project(depth_from_color_ * (s * ray).eval());
+        if (!around(seen, [&](int u, int v) { return sensed_.piece(u, v) == piece; }).second) return;
+        ++result_.inside;
+        if (z <= 0) {
+            ++result_.holes;
+            return;
+        }
+        const double off = (z - s) / (info_.noise.sigma(s) + 1 / info_.depth_units_per_metre);
+        result_.wrong += std::abs(off) > 5;
+        squares_ += off * off;
+        sum_ += off;
+    }
+    /// Whether the depth camera has a reading of such a depth around a point of its frame: within the noise,
+    /// and what its surface changes by over the footprint.
+    bool has_reading(const Eigen::Vector3d& p) const {
+        const auto is_such = [&](int u, int v) {
+            if (sensed_.piece(u, v) < 0) return false;
+            const Hit there = scene_.look(Eigen::Vector3d::Zero(), info_.depth.unproject(u, v, 1));
+            const Plane& plane = scene_.plane(there.piece);
+            const Eigen::Vector2d pixel = info_.depth.project(p);
+            const Eigen::Vector3d towards = info_.depth.unproject(pixel.x(), pixel.y(), 1);
+            const double on_plane = -plane.d / plane.normal.dot(towards);
+            return std::abs(p.z() - on_plane) <= 6 * info_.noise.sigma(p.z()) + 0.002;
+        };
+        return around(info_.depth.project(p), is_such).first > 0;
+    }
+
+    const Scene& scene_;
+    const CameraInfo& info_;
+    const Sensed& sensed_;
+    Pose depth_from_color_;
+    double reach_u_, reach_v_;  ///< of a pixel's footprint in the depth image, pixels
+    Image<std::int8_t> pieces_;
+    Registered result_;
+    double squares_ = 0, sum_ = 0;
+};
+
+inline Registered compare(const Scene& scene, const CameraInfo& info, const Sensed& sensed,
+                          const DepthImage& registered) {
+    Comparison comparison(scene, info, sensed);
+    for (int y = 0; y < registered.height; ++y)
+        for (int x = 0; x < registered.width; ++x) comparison.add(x, y, info.metres(registered(x, y)));
+    return comparison.result();
 }
 
 }  // namespace planemap::test

@@ -8,7 +8,7 @@
 #include <limits>
 #include <random>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 
 namespace planemap {
 namespace {

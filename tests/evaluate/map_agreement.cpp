@@ -3,7 +3,8 @@
 
 #include <cmath>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
+#include "core/geometry/outline_frame.hpp"
 #include "evaluate/plane_raster.hpp"
 
 namespace planemap::test {
@@ -26,8 +27,7 @@ Shared share(const MapPlane& a, const MapPlane& b) {
     using evaluation::PlaneRaster;
     const Pose a_from_b = a.world_from_plane().inverse(Eigen::Isometry) * b.world_from_plane();
     const PlaneRaster cells_a = evaluation::rasterised(a.outline.rings(), kCell_m);
-    const PlaneRaster cells_b =
-        evaluation::rasterised(evaluation::projected(b.outline.rings(), a_from_b), kCell_m);
+    const PlaneRaster cells_b = evaluation::rasterised(projected(a_from_b, b.outline.rings()), kCell_m);
     const Plane b_in_a = a_from_b * Plane{Eigen::Vector3d::UnitZ(), 0};
     Shared shared{cells_a.count(), cells_b.count()};
     for_each_cell(cells_a, [&](int x, int y) {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "core/geometry/box.hpp"
 #include "evaluate/plane_judge.hpp"
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 
 namespace planemap::evaluation {
 namespace {

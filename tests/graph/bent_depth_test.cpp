@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "core/depth_correction.hpp"
+#include "core/offset_at.hpp"
 #include "graph/landmarks.hpp"
 #include "graph/optimisation_task.hpp"
 
@@ -55,7 +55,7 @@ std::vector<PlanarRegion> seen(const Pose& world_from_camera, const CameraInfo& 
                 const double along = -plane.normal.dot(ray) / plane.d;
                 if (along > inverse) inverse = along, nearest = i;
             }
-            const double sensed = 1 / (inverse - offset_at(field, camera.depth, u, v));
+            const double sensed = 1 / (inverse - test::offset_at(field, camera.depth, u, v));
             const double read = sensed + camera.noise.sigma(sensed) * noise(random) / 8;
             points[nearest].push_back(read * ray);
             moments[nearest].add(points[nearest].back());

@@ -22,9 +22,9 @@ struct World {
     std::list<StoredKeyframe> keyframes;
     std::vector<SeenRegion> seen;
     PlaneSet planes{kRules, 200};
-    RegionJoiner joiner{ObservationModel{}, 0.025};
+    RegionJoiner joiner{observation_model({}), 0.025};
     PlaneIds ids;
-    SurfaceRules rules;
+    SurfaceRules rules = *surface_rules({});
 
     void see(const Rectangle& rectangle, std::size_t plane) {
         const StoredKeyframe& keyframe = keyframes.emplace_back(stored_at(Pose::Identity(), {rectangle}));

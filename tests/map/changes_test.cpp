@@ -158,7 +158,7 @@ TEST(Changes, OfFoldedKeyframes) {
             const Pose pose = camera_at({0.02 * i, 0, 0});
             mapper.add(keyframe(i, (i < 10) == goes ? with : without, pose), pose);
         }
-        EXPECT_EQ(mapper.folded(), 18u);
+        EXPECT_EQ(mapper.work().folded, 18u);
         EXPECT_EQ(mapper.map().planes.size(), goes ? 1u : 2u);
         mapper.settle();
         EXPECT_EQ(mapper.map().planes.size(), goes ? 1u : 2u);
@@ -169,7 +169,7 @@ TEST(Changes, OfFoldedKeyframes) {
     const Rectangle elsewhere{facing({0, 0, -3.5}, {0, 0, 1}, {1, 0, 0}), 2, 1.5, {}};
     const Pose turned = camera_at({0, 0, -1}) * Eigen::AngleAxisd(3.14159265, Eigen::Vector3d::UnitY());
     for (int i = 1; i < 5; ++i) stand.mapper.add(keyframe(i, {elsewhere}, turned), turned);
-    EXPECT_EQ(stand.mapper.folded(), 3u);
+    EXPECT_EQ(stand.mapper.work().folded, 3u);
     stand.mapper.settle();
     EXPECT_EQ(stand.mapper.map().planes.size(), 2u) << "two walls";
 }

@@ -14,7 +14,7 @@ using samples::wall_at;
 const std::map<int, Pose> kPoses{{0, Pose::Identity()}};
 
 DerivedMap derived_map() {
-    return {DerivationRules{}, AdjacencyRules{}};
+    return {derivation_rules({}), adjacency_rules({}), inference_rules({})};
 }
 
 TEST(DerivedMap, HasThePlanesOfTheEstimatesByAscendingId) {

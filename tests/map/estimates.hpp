@@ -3,12 +3,12 @@
 #pragma once
 
 #include <map>
-#include <numbers>
 #include <vector>
 
+#include "core/geometry/outline_frame.hpp"
 #include "core/scene.hpp"
-#include "map/merging.hpp"
 #include "map/plane_estimate.hpp"
+#include "map/rules.hpp"
 #include "map/stored_keyframe.hpp"
 
 namespace planemap::map::samples {
@@ -16,7 +16,8 @@ namespace planemap::map::samples {
 using scene::facing;
 using scene::Rectangle;
 
-const MergeRules kRules{10 * std::numbers::pi / 180, 0.05, 0.5};
+const MergeRules kRules = merge_rules({});
+const OutlineOptions kOutline{1, 0.01, 0.03, 0};
 
 /// A square that is seen from the origin, along z.
 inline Rectangle wall_at(double x, double y, double z, double half = 0.5) {
@@ -47,13 +48,10 @@ inline PlaneEstimate estimate_of(const Rectangle& rectangle, int id, const Relia
 /// The same with its shape drawn, seen by so many looks with a support of 2^strength.
 inline PlaneEstimate drawn_estimate_of(const Rectangle& rectangle, int id, int strength = 0, int looks = 1) {
     PlaneEstimate estimate = estimate_of(rectangle, id);
-    Outline outline = scene::outline_of(rectangle);
     const Pose grid_from_face =
         estimate.grid.world_from_grid().inverse(Eigen::Isometry) * rectangle.world_from_face;
-    for (Ring& ring : outline.rings)
-        for (Eigen::Vector2d& v : ring) v = (grid_from_face * Eigen::Vector3d(v.x(), v.y(), 0)).head<2>();
     FlatPolygon polygon;
-    polygon.assign(outline);
+    polygon.assign(projected(grid_from_face, scene::outline_of(rectangle)));
     estimate.grid.add(polygon, strength, looks);
     estimate.count_keyframe(0, 1);
     return estimate;

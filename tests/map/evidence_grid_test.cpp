@@ -7,6 +7,8 @@
 
 #include "core/geometry/crossing.hpp"
 #include "core/scene.hpp"
+#include "map/estimates.hpp"
+#include "map/evidence_blocks.hpp"
 #include "map/evidence_shape.hpp"
 
 namespace planemap::map {
@@ -22,16 +24,16 @@ int add(EvidenceGrid& grid, const Outline& outline, int strength = 0) {
 
 template <typename IsMissed>
 int miss(EvidenceGrid& grid, int looks, const IsMissed& is_missed) {
-    std::vector<EvidenceGrid::Block> blocks;
-    grid.seen_blocks({-1e9, -1e9}, {1e9, 1e9}, blocks);
+    std::vector<EvidenceBlock> blocks;
+    add_seen_blocks(grid, {-1e9, -1e9}, {1e9, 1e9}, blocks);
     int lost = 0;
-    for (const EvidenceGrid::Block& block : blocks)
-        if (is_missed(block.middle)) lost += grid.miss(block, looks);
+    for (const EvidenceBlock& block : blocks)
+        if (is_missed(block.middle)) lost += miss(grid, block, looks);
     return lost;
 }
 
 OutlineOptions every_cell() {
-    OutlineOptions options;
+    OutlineOptions options = samples::kOutline;
     options.min_ring_m2 = 0;
     options.tolerance_m = 0;
     return options;
@@ -42,7 +44,7 @@ TEST(EvidenceGrid, HasTheAreaOfWhatWasAdded) {
     const int fresh =
         add(grid, Outline{{rectangle_ring(-1, -0.5, 1, 0.5), rectangle_ring(-0.2, -0.2, 0.2, 0.2)}});
     EXPECT_EQ(fresh, 2944) << "(2 - 0.16) / 0.025^2";
-    const Outline outline = outline_of(grid, {});
+    const Outline outline = outline_of(grid, samples::kOutline);
     EXPECT_EQ(outline.rings.size(), 2u);
     EXPECT_NEAR(area(outline), 2 - 0.16, 0.03);
     EXPECT_FALSE(contains(outline, {0, 0}));
@@ -78,10 +80,10 @@ TEST(EvidenceGrid, GrowsAndCounts) {
     EXPECT_EQ(hits(-1.5, -1.5), 4);
     EXPECT_EQ(hits(-0.5, -0.5), 0);
     EXPECT_EQ(hits(1e9, -1e9), 0);
-    OutlineOptions twice;
+    OutlineOptions twice = samples::kOutline;
     twice.min_support = 3;
     EXPECT_NEAR(area(outline_of(grid, twice)), 0.5 + 1, 1e-9);
-    EXPECT_NEAR(area(outline_of(grid, {})), 6, 1e-9);
+    EXPECT_NEAR(area(outline_of(grid, samples::kOutline)), 6, 1e-9);
     for (int i = 0; i < 300; ++i) add(grid, Outline{{rectangle_ring(0, 0, 1, 1)}}, i % 3);
     EXPECT_EQ(hits(0.2, 0.5), EvidenceCells::kMaxSupport);
     EXPECT_EQ(hits(4.7, 0.5), 2);
@@ -93,23 +95,23 @@ TEST(EvidenceGrid, AddsAnotherGridInAnotherFrame) {
     add(other, shape, 1);
     EvidenceGrid grid(Pose::Identity(), 0.025);
     grid.add(other);
-    EXPECT_NEAR(area(outline_of(grid, {})), area(shape), 0.06);
+    EXPECT_NEAR(area(outline_of(grid, samples::kOutline)), area(shape), 0.06);
     const Eigen::Vector3d hole = other.world_from_grid() * Eigen::Vector3d(0.3, 0, 0);
     const Eigen::Vector3d solid = other.world_from_grid() * Eigen::Vector3d(-0.3, 0, 0);
     EXPECT_EQ(grid.evidence(hole.head<2>()).support, 0);
     EXPECT_EQ(grid.evidence(solid.head<2>()).support, 2);
     grid.add(EvidenceGrid(Pose::Identity(), 0.025));
-    EXPECT_NEAR(area(outline_of(grid, {})), area(shape), 0.06);
+    EXPECT_NEAR(area(outline_of(grid, samples::kOutline)), area(shape), 0.06);
 }
 
 TEST(EvidenceGrid, LeavesOutSmallPartsAndHoles) {
     EvidenceGrid grid(Pose::Identity(), 0.025);
     add(grid, Outline{{rectangle_ring(0, 0, 1, 1), rectangle_ring(0.4, 0.4, 0.475, 0.475),
                        rectangle_ring(2, 0, 2.075, 0.075)}});
-    const Outline outline = outline_of(grid, {});
+    const Outline outline = outline_of(grid, samples::kOutline);
     EXPECT_EQ(outline.rings.size(), 1u);
     EXPECT_NEAR(area(outline), 1, 1e-9);
-    EXPECT_TRUE(outline_of(EvidenceGrid(), {}).empty());
+    EXPECT_TRUE(outline_of(EvidenceGrid(), samples::kOutline).empty());
 }
 
 TEST(EvidenceGrid, SliversNeedSupport) {
@@ -129,7 +131,7 @@ TEST(EvidenceGrid, WhatIsMissedAsOftenAsSeenGoesAndComesBack) {
     EXPECT_EQ(add(grid, plate), 3200);
     const auto left = [](const Eigen::Vector2d& p) { return p.x() < 1; };
     EXPECT_EQ(miss(grid, 1, left), 1600) << "seen once, looked through once";
-    EXPECT_NEAR(area(outline_of(grid, {})), 1, 1e-9);
+    EXPECT_NEAR(area(outline_of(grid, samples::kOutline)), 1, 1e-9);
     EXPECT_EQ(miss(grid, 1, left), 0) << "it is gone";
     EXPECT_EQ(grid.evidence({0.5, 0.5}).odds, -1);
     EXPECT_EQ(grid.evidence({1.5, 0.5}).odds, 1);
@@ -143,18 +145,18 @@ TEST(EvidenceGrid, WhatIsMissedAsOftenAsSeenGoesAndComesBack) {
 TEST(EvidenceGrid, MissesCountOnlyWhereTheyAre) {
     EvidenceGrid part(Pose::Identity(), 0.025);
     add(part, Outline{{rectangle_ring(-3, -1, 3, 1)}});
-    std::vector<EvidenceGrid::Block> lower, beyond;
-    part.seen_blocks({-10, -10}, {10, -0.1}, lower);
-    for (const EvidenceGrid::Block& block : lower) part.miss(block, 1);
-    EXPECT_NEAR(area(outline_of(part, {})), 6, 0.7) << "the upper half is left";
-    EXPECT_FALSE(contains(outline_of(part, {}), {0, -0.5}));
-    part.seen_blocks({5, 5}, {6, 6}, beyond);
+    std::vector<EvidenceBlock> lower, beyond;
+    add_seen_blocks(part, {-10, -10}, {10, -0.1}, lower);
+    for (const EvidenceBlock& block : lower) miss(part, block, 1);
+    EXPECT_NEAR(area(outline_of(part, samples::kOutline)), 6, 0.7) << "the upper half is left";
+    EXPECT_FALSE(contains(outline_of(part, samples::kOutline), {0, -0.5}));
+    add_seen_blocks(part, {5, 5}, {6, 6}, beyond);
     EXPECT_TRUE(beyond.empty());
 }
 
 TEST(EvidenceGrid, TellsWhatWasNeverSeenBefore) {
     EvidenceGrid grid(Pose::Identity(), 0.025);
-    std::vector<EvidenceGrid::Block> fresh;
+    std::vector<EvidenceBlock> fresh;
     FlatPolygon polygon;
     polygon.assign(Outline{{rectangle_ring(0, 0, 1, 1)}});
     grid.add(polygon, 0, 1, &fresh);
@@ -164,7 +166,7 @@ TEST(EvidenceGrid, TellsWhatWasNeverSeenBefore) {
     grid.add(polygon, 0, 1, &fresh);
     EXPECT_EQ(fresh.size(), 10u);
     int lost = 0;
-    for (const EvidenceGrid::Block& block : fresh) lost += grid.miss_before(block, 1);
+    for (const EvidenceBlock& block : fresh) lost += miss_before(grid, block, 1);
     EXPECT_EQ(lost, 80) << "only what is fresh";
     fresh.clear();
     grid.add(polygon, 0, 1, &fresh);
@@ -184,9 +186,9 @@ TEST(EvidenceGrid, WhatWasBeforeCountsWhereLooksHaveNotDecided) {
         polygon.assign(wide);
         const Bitmap cells = grid.cells_of(polygon);
         grid.add_support(cells, 0);
-        std::vector<EvidenceGrid::Block> blocks;
-        grid.seen_blocks({-1, -1}, {3, 3}, blocks);
-        for (const EvidenceGrid::Block& block : blocks) grid.miss_before(block, looks);
+        std::vector<EvidenceBlock> blocks;
+        add_seen_blocks(grid, {-1, -1}, {3, 3}, blocks);
+        for (const EvidenceBlock& block : blocks) miss_before(grid, block, looks);
         grid.settle_on(before);
         EXPECT_EQ(grid.evidence({0.5, 0.5}).odds, have_decided ? EvidenceCells::kLeastOdds : 5 - looks);
         EXPECT_EQ(grid.evidence({1.5, 0.5}).odds, have_decided ? EvidenceCells::kLeastOdds : -looks);
@@ -202,7 +204,7 @@ TEST(EvidenceGrid, OutlinesDoNotCross) {
             const Eigen::Vector2d a(c(random), c(random)), b(c(random), c(random)), d(c(random), c(random));
             add(grid, Outline{{Ring{a, b, d}}});
         }
-        OutlineOptions coarse;
+        OutlineOptions coarse = samples::kOutline;
         coarse.tolerance_m = 0.1;
         coarse.min_ring_m2 = 0.001;
         EXPECT_FALSE(rings_cross(outline_of(grid, coarse)));

@@ -19,7 +19,7 @@ const FreeSpace kFreeSpace{0.05};
 
 TEST(FoldedPlanes, KeepPointsShapeAndKeyframes) {
     FoldedPlanes folded(kRules, 200);
-    RegionJoiner joiner({}, 0.025);
+    RegionJoiner joiner(observation_model({}), 0.025);
     double points = 0;
     for (int i = 0; i < 4; ++i) {
         const StoredKeyframe keyframe =
@@ -32,12 +32,12 @@ TEST(FoldedPlanes, KeepPointsShapeAndKeyframes) {
     EXPECT_EQ(folded.planes()[1].id, 3);
     EXPECT_EQ(folded.planes()[0].keyframes, 4);
     EXPECT_NEAR(points_of(folded.planes()), points, 1e-6);
-    EXPECT_NEAR(area(outline_of(folded.planes()[0].grid, {})), 1.6, 0.1);
+    EXPECT_NEAR(area(outline_of(folded.planes()[0].grid, samples::kOutline)), 1.6, 0.1);
 }
 
 TEST(FoldedPlanes, WhatIsOnNoPlaneIsNotKept) {
     FoldedPlanes folded(kRules, 200);
-    RegionJoiner joiner({}, 0.025);
+    RegionJoiner joiner(observation_model({}), 0.025);
     folded.fold(0, stored_at(Pose::Identity(), {wall_at(0, 0, 3)}), joiner, kFreeSpace);
     folded.fold(1, stored_at(Pose::Identity(), {}), joiner, kFreeSpace);
     EXPECT_TRUE(folded.planes().empty());

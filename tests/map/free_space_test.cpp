@@ -21,7 +21,7 @@ constexpr double kMargin_m = 0.05;
 const FreeSpace kFreeSpace{kMargin_m};
 
 double shape_area(const PlaneEstimate& plane) {
-    return area(outline_of(plane.grid, {}));
+    return area(outline_of(plane.grid, samples::kOutline));
 }
 
 /// What is left of a plate 2 m ahead, which some looks saw, after others from the origin that see these.

@@ -4,83 +4,24 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <list>
 #include <vector>
 
-#include "core/scene.hpp"
-#include "map/inferred_parts.hpp"
+#include "map/hidden_wall.hpp"
 
 namespace planemap::map {
 namespace {
 
+using samples::kCupboard;
+using samples::kFloor;
+using samples::kFront;
+using samples::kSide;
+using samples::kWall;
+using samples::kWholeFloor;
+using samples::kWholeWall;
+using samples::map_plane;
+using samples::Room;
 using scene::facing;
 using scene::Rectangle;
-
-// A room of 4 x 2.4 m, seen from its middle: x right, y down, z ahead. The wall is 3 m ahead, the floor 1.2 m
-// below; a cupboard of 1 x 1.4 m stands half a metre before the wall and hides the wall from 1.2 x 1.44 m on.
-constexpr int kWall = 1, kFloor = 2, kSide = 3, kCupboard = 4;
-const Rectangle kFront{facing({0, 0.5, 2.5}, {0, 0, -1}, {1, 0, 0}), 0.5, 0.7, {}};
-const Rectangle kWholeWall{facing({0, 0, 3}, {0, 0, -1}, {1, 0, 0}), 2, 1.2, {}};
-const Rectangle kWholeFloor{facing({0, 1.2, 2.5}, {0, -1, 0}, {1, 0, 0}), 2, 0.5, {}};  // in view
-
-MapPlane map_plane(int id, PlaneLabel label, const Pose& world_from_face, const Outline& outline) {
-    const Rectangle face{world_from_face, 2, 2, {}};
-    PlanarRegion region = scene::region_of(face, Pose::Identity(), 0.2);
-    region.outline = outline;
-    MapPlane plane(id, region, 5);
-    plane.label = label;
-    return plane;
-}
-
-/// What is seen of the wall; y of its face goes up.
-Outline wall_outline() {
-    return {
-        {{{-2, -1.2}, {-0.6, -1.2}, {-0.6, 0.24}, {0.6, 0.24}, {0.6, -1.2}, {2, -1.2}, {2, 1.2}, {-2, 1.2}}}};
-}
-
-/// A map's planes and what cameras see of the whole things; the nearest is seen.
-struct Room {
-    PlaneMap map;
-    std::list<StoredKeyframe> keyframes;
-    std::vector<Viewpoint> views;
-
-    Room() {
-        map.up = {0, -1, 0};
-        const Pose wall = facing({0, 0, 3}, {0, 0, -1}, {1, 0, 0});
-        map.planes.push_back(map_plane(kWall, PlaneLabel::kWall, wall, wall_outline()));
-        const Pose floor = facing({0, 1.2, 1.5}, {0, -1, 0}, {1, 0, 0});
-        map.planes.push_back(map_plane(
-            kFloor, PlaneLabel::kFloor, floor,
-            {{{{-2, -1.5}, {2, -1.5}, {2, 1.5}, {0.6, 1.5}, {0.6, 1}, {-0.6, 1}, {-0.6, 1.5}, {-2, 1.5}}}}));
-    }
-    struct Thing {
-        int plane;
-        Rectangle rectangle;
-    };
-    void look(const std::vector<Thing>& things, const Eigen::Vector3d& from = {0, 0, 0}) {
-        const Pose world_from_camera = scene::camera_at(from);
-        std::vector<PlanarRegion> regions;
-        for (const Thing& thing : things)
-            regions.push_back(scene::region_of(thing.rectangle, world_from_camera, 0.1));
-        StoredKeyframe& keyframe = keyframes.emplace_back(stored(1000, regions));
-        for (std::size_t i = 0; i < things.size(); ++i) keyframe.regions[i].plane = things[i].plane;
-        keyframe.world_from_camera = world_from_camera;
-        views.emplace_back(keyframe);
-    }
-    void look_at_all() { look({{kWall, kWholeWall}, {kFloor, kWholeFloor}, {kCupboard, kFront}}); }
-
-    std::map<int, InferredCells> infer(const std::map<int, PlanePart>& told = {}) const {
-        return Inference(map, views, told, 0.025).infer();
-    }
-    double area(int plane) const {
-        const auto inferred = infer();
-        const auto at = inferred.find(plane);
-        return at == inferred.end() ? 0 : area(at->second);
-    }
-    static double area(const InferredCells& cells) {
-        return static_cast<double>(cells.cells.count()) * cells.cell_m * cells.cell_m;
-    }
-};
 
 /// Whether a place of the world, on the plane, is inferred.
 bool holds(const std::map<int, InferredCells>& inferred, int plane, const Eigen::Vector3d& p_world) {
@@ -177,65 +118,6 @@ TEST(Inference, TheOrderOfViewsIsNoMatter) {
         EXPECT_EQ(difference.count(), cells.cells.count());
         EXPECT_EQ(reversed.at(id).cells.count(), cells.cells.count());
     }
-}
-
-TEST(InferredParts, CountInNoAreaAndGoWhereTheyAreSeen) {
-    Room room;
-    room.look_at_all();
-    const float area = room.map.planes[0].area;
-    InferredParts parts(InferenceRules{});
-    parts.infer(room.map, room.views);
-    ASSERT_NE(room.map.inferred_of(kWall), nullptr);
-    EXPECT_EQ(room.map.planes[0].area, area);
-    const Outline outline = room.map.inferred_of(kWall)->rings();
-    EXPECT_NEAR(planemap::area(outline), 1.2 * 1.44, 0.1);
-    EXPECT_LE(outline.vertex_count(), 8u) << "straight edges";
-
-    // The cupboard is pulled aside, and half of the wall behind it comes into view.
-    const Outline more{
-        {{{-2, -1.2}, {0, -1.2}, {0, 0.24}, {0.6, 0.24}, {0.6, -1.2}, {2, -1.2}, {2, 1.2}, {-2, 1.2}}}};
-    room.map.planes[0] = map_plane(kWall, PlaneLabel::kWall, facing({0, 0, 3}, {0, 0, -1}, {1, 0, 0}), more);
-    parts.update(room.map, {kWall});
-    EXPECT_NEAR(planemap::area(room.map.inferred_of(kWall)->rings()), 0.6 * 1.44, 0.1);
-    room.map.planes.erase(room.map.planes.begin());
-    parts.update(room.map, {kWall});
-    EXPECT_EQ(room.map.inferred_of(kWall), nullptr);
-    EXPECT_NE(room.map.inferred_of(kFloor), nullptr);
-}
-
-TEST(InferredParts, OfAMapToStartFromStayUntilSomebodySeesPastThem) {
-    Room room;
-    room.look_at_all();
-    InferredParts before(InferenceRules{});
-    before.infer(room.map, room.views);
-    const double area = planemap::area(room.map.inferred_of(kWall)->rings());
-
-    InferredParts parts(InferenceRules{});
-    parts.start_from(room.map);
-    parts.infer(room.map, {});
-    ASSERT_NE(room.map.inferred_of(kWall), nullptr);
-    EXPECT_NEAR(planemap::area(room.map.inferred_of(kWall)->rings()), area, 0.05);
-    Room later;
-    later.look({{9, {facing({0, 0, 6}, {0, 0, -1}, {1, 0, 0}), 4, 4, {}}}});
-    parts.infer(room.map, later.views);
-    EXPECT_EQ(room.map.inferred_of(kWall), nullptr);
-
-    InferredParts off(InferenceRules{.infers = false});
-    off.start_from(room.map);
-    off.infer(room.map, room.views);
-    EXPECT_TRUE(room.map.inferred.empty());
-}
-
-TEST(InferredParts, HugePlanesAndPartsTakeBoundedMemory) {
-    Room room;
-    room.look_at_all();
-    room.map.planes[1] = map_plane(kFloor, PlaneLabel::kFloor, facing({0, 1.2, 0}, {0, -1, 0}, {1, 0, 0}),
-                                   {{scene::rectangle_ring(-30000, -30000, 30000, 30000)}});
-    room.map.inferred = {{kWall, MapOutline({{scene::rectangle_ring(-30000, -30000, 30000, 30000)}})}};
-    InferredParts parts(InferenceRules{});
-    parts.start_from(room.map);
-    parts.infer(room.map, room.views);
-    EXPECT_LT(parts.memory_bytes(), std::size_t{64} << 20);
 }
 
 }  // namespace

@@ -140,7 +140,8 @@ TEST(PlaneMapper, MergedPlaneIsTheFitToAllPoints) {
     }
     const PlaneFit fit = fit_plane(all);
     const MapPlane& merged = mapper.map().planes[0];
-    const Moments moments = mapper.moments(merged.id);
+    ASSERT_EQ(mapper.estimates().size(), 1u);
+    const Moments& moments = mapper.estimates()[0].moments;
     EXPECT_EQ(moments.count, all.count);
     EXPECT_LT((moments.mean() - all.mean()).norm(), 1e-6);
     EXPECT_LT((moments.covariance() - all.covariance()).norm(), 1e-6);
@@ -303,7 +304,7 @@ TEST(PlaneMapper, RebuildEqualsAFreshBuildAndKeepsIds) {
     std::map<int, Eigen::Vector3d> before;
     for (const MapPlane& plane : corrected.map().planes) before[plane.id] = plane.center.cast<double>();
     corrected.update(trajectory_of(after, 3));
-    EXPECT_EQ(corrected.rebuilds(), 1u);
+    EXPECT_EQ(corrected.work().rebuilds, 1u);
     EXPECT_EQ(corrected.map().revision, 3);
     fresh.settle();
     expect_same_planes(corrected.map(), fresh.map(), 1e-9);
@@ -339,9 +340,9 @@ TEST(PlaneMapper, SmallMovesDoNotRebuild) {
     const Pose pose = camera_at({0, 0, 1});
     mapper.add(keyframe(0, room(), pose), pose);
     mapper.update(trajectory_of({camera_at({0.001, 0, 1})}));
-    EXPECT_EQ(mapper.rebuilds(), 0u);
+    EXPECT_EQ(mapper.work().rebuilds, 0u);
     mapper.update(trajectory_of({camera_at({0.003, 0, 1})}));
-    EXPECT_EQ(mapper.rebuilds(), 1u);
+    EXPECT_EQ(mapper.work().rebuilds, 1u);
 }
 
 TEST(PlaneMapper, ARepeatedKeyframeCountsOnce) {
@@ -396,7 +397,7 @@ TEST(PlaneMapper, ThreadsDoNotChangeTheResult) {
     }
     alone.settle();
     together.settle();
-    EXPECT_EQ(alone.rebuilds(), 1u);
+    EXPECT_EQ(alone.work().rebuilds, 1u);
     expect_identical(alone.map(), together.map());
 }
 
@@ -407,7 +408,7 @@ TEST(PlaneMapper, SettlingTwiceChangesNothing) {
     mapper.settle();
     const PlaneMap once = mapper.map();
     mapper.settle();
-    EXPECT_EQ(mapper.rebuilds(), 1u);
+    EXPECT_EQ(mapper.work().rebuilds, 1u);
     expect_identical(once, mapper.map());
 }
 
@@ -438,8 +439,8 @@ TEST(PlaneMapper, FoldedKeyframesStayInThePlanes) {
         const Pose pose = camera_at({0.05 * i, 0, 1}, 0.1 * i);
         for (PlaneMapper* mapper : {&folding, &keeping}) mapper->add(keyframe(i, room(), pose, 0.002), pose);
     }
-    EXPECT_EQ(folding.folded(), 9u);
-    EXPECT_EQ(keeping.folded(), 0u);
+    EXPECT_EQ(folding.work().folded, 9u);
+    EXPECT_EQ(keeping.work().folded, 0u);
     std::set<int> ids;
     for (const MapPlane& plane : folding.map().planes) ids.insert(plane.id);
     folding.settle();
@@ -477,7 +478,7 @@ TEST(PlaneMapper, ReplacedKeyframesLeaveTheirPointsAndTheirSurface) {
     std::erase_if(some.keyframes, [](const KeyframePose& k) { return k.id % 4 != 0; });
     thinned.update(some);
     EXPECT_EQ(thinned.keyframes(), 3u);
-    EXPECT_EQ(thinned.replaced(), 9u);
+    EXPECT_EQ(thinned.work().replaced, 9u);
     EXPECT_LT(thinned.working_bytes(), keeping.working_bytes());
     std::set<int> ids;
     for (const MapPlane& plane : thinned.map().planes) ids.insert(plane.id);
@@ -529,7 +530,7 @@ TEST(PlaneMapper, AReplacedKeyframeStaysWhenThereIsNoneToTakeOver) {
     KeyframeTrajectory without_it;
     without_it.keyframes = {{1, 0, pose}};
     mapper.update(without_it);
-    EXPECT_EQ(mapper.replaced(), 0u);
+    EXPECT_EQ(mapper.work().replaced, 0u);
     EXPECT_EQ(mapper.keyframes(), 1u);
     mapper.settle();
     EXPECT_EQ(mapper.map().planes.size(), 5u);
@@ -577,8 +578,8 @@ TEST(PlaneMapper, TheRastersOfAHugeMapAreBounded) {
     PlaneMapper mapper;
     mapper.start_from(huge);
     EXPECT_LT(mapper.working_bytes(), std::size_t{600} << 20);
-    EXPECT_EQ(mapper.rejected(), 0u);
-    EXPECT_EQ(mapper.coarsened(), 50u) << "the table has the room it needs";
+    EXPECT_EQ(mapper.losses().planes_refused, 0u);
+    EXPECT_EQ(mapper.work().coarsened, 50u) << "the table has the room it needs";
     ASSERT_EQ(mapper.map().planes.size(), 51u);
     for (const MapPlane& plane : mapper.map().planes)
         EXPECT_NEAR(plane.area, plane.id == 50 ? 0.96 : 40000, plane.id == 50 ? 0.05 : 200);
@@ -616,7 +617,7 @@ TEST(PlaneMapper, KeyframesThatWaitAreBounded) {
         mapper.add(seen);
     }
     EXPECT_EQ(mapper.waiting(), 4096u);
-    EXPECT_EQ(mapper.dropped(), 904u);
+    EXPECT_EQ(mapper.losses().keyframes_unplaced, 904u);
 }
 
 TEST(PlaneMapper, SmallAndSeldomSeenPlanesAreHeldBack) {
@@ -681,7 +682,7 @@ TEST(PlaneMapper, RejectsWhatIsNotARegion) {
                                          hostile.regions[6].moments.count;  // all points in one
     PlaneMapper mapper;
     mapper.add(hostile, camera_at({0, 0, 1}));
-    EXPECT_EQ(mapper.rejected(), 7u);
+    EXPECT_EQ(mapper.losses().regions_refused, 7u);
     EXPECT_EQ(mapper.map().planes.size(), 1u);
 }
 
@@ -692,7 +693,7 @@ TEST(PlaneMapper, SurvivesOutlinesFarFromTheirBox) {
     hostile.regions[0].outline.rings[0][0] = {1e12, -1e12};
     PlaneMapper mapper;
     mapper.add(hostile, camera_at({0, 0, 1}));
-    EXPECT_EQ(mapper.rejected(), 1u);
+    EXPECT_EQ(mapper.losses().regions_refused, 1u);
     EXPECT_TRUE(mapper.map().planes.empty());
 }
 

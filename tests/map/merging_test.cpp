@@ -3,8 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <numbers>
-
+#include "core/geometry/angle.hpp"
 #include "core/scene.hpp"
 
 namespace planemap::map {
@@ -12,8 +11,7 @@ namespace {
 
 using scene::facing;
 
-constexpr double kDeg = std::numbers::pi / 180;
-const MergeRules kRules{10 * kDeg, 0.05, 0.5};
+const MergeRules kRules{radians(10), 0.05, 0.5};
 
 struct Sheet {
     Plane plane;
@@ -35,7 +33,7 @@ bool same(const Sheet& a, const Sheet& b) {
 }
 
 Eigen::Vector3d tilted(double deg) {
-    return {std::sin(deg * kDeg), 0, std::cos(deg * kDeg)};
+    return {std::sin(radians(deg)), 0, std::cos(radians(deg))};
 }
 
 TEST(Merging, AngleThreshold) {

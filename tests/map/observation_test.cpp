@@ -16,7 +16,7 @@ StoredRegion seen_at(double depth) {
 }
 
 TEST(ObservationModel, AFartherRegionCountsLess) {
-    const ObservationModel model;
+    const ObservationModel model = observation_model({});
     const DepthNoise noise;
     double weight = 1.1, sigma = 0;
     int strength = 3;
@@ -36,7 +36,7 @@ TEST(ObservationModel, AFartherRegionCountsLess) {
 }
 
 TEST(ObservationModel, WithoutNoiseAllCountAlike) {
-    const ObservationModel model;
+    const ObservationModel model = observation_model({});
     const DepthNoise none{0, 0, 0};
     for (const double depth : {0.5, 8.0}) {
         EXPECT_EQ(model.weight(seen_at(depth), none), 1);

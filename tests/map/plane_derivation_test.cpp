@@ -13,11 +13,13 @@ using samples::wall_at;
 using scene::facing;
 using scene::Rectangle;
 
+const DerivationRules kRules = derivation_rules({});
+
 TEST(DerivedPlane, HasTheEstimatesPlaneAndItsShapeInABoxAroundIt) {
     const Rectangle wall{
         facing({3, -2, 1}, {0.3, 1, 0.1}, {0, 0, 1}), 1.5, 1, {scene::rectangle_ring(-0.5, -0.5, 0.3, 0.4)}};
     const PlaneEstimate estimate = drawn_estimate_of(wall, 5);
-    const auto plane = derived_plane(estimate, {});
+    const auto plane = derived_plane(estimate, kRules);
     ASSERT_TRUE(plane.has_value());
     EXPECT_EQ(plane->id, 5);
     EXPECT_EQ(plane->keyframes, 1);
@@ -35,12 +37,12 @@ TEST(DerivedPlane, HasTheEstimatesPlaneAndItsShapeInABoxAroundIt) {
 }
 
 TEST(DerivedPlane, NothingOfWhatIsSmallSeldomSeenOrWithoutShape) {
-    const DerivationRules rules{{}, 0.05, 0.25, 1};
+    const DerivationRules rules{samples::kOutline, 0.05, 0.25, 1};
     PlaneEstimate small = drawn_estimate_of(wall_at(0, 0, 3, 0.2), 0);
     EXPECT_FALSE(derived_plane(small, rules)) << "0.16 m2, seen once";
     small.count_keyframe(1, 1);
     EXPECT_TRUE(derived_plane(small, rules)) << "seen twice";
-    EXPECT_FALSE(derived_plane(small, {{}, 0.05, 0.25, 3}));
+    EXPECT_FALSE(derived_plane(small, {samples::kOutline, 0.05, 0.25, 3}));
     PlaneEstimate scrap = drawn_estimate_of(wall_at(0, 0, 3, 0.1), 0);
     scrap.count_keyframe(1, 1);
     EXPECT_FALSE(derived_plane(scrap, rules)) << "0.04 m2";
@@ -51,7 +53,7 @@ TEST(DerivedPlane, NothingOfWhatIsSmallSeldomSeenOrWithoutShape) {
 
 TEST(KeepsOutline, AsLongAsHardlyACellChangedAndNothingMoved) {
     PlaneEstimate estimate = drawn_estimate_of(wall_at(0, 0, 3), 0);
-    const auto plane = derived_plane(estimate, {});
+    const auto plane = derived_plane(estimate, kRules);
     ASSERT_TRUE(plane.has_value());
     const Plane as_drawn = estimate.plane;
     EXPECT_TRUE(keeps_outline(estimate, *plane, as_drawn));
@@ -70,7 +72,7 @@ TEST(KeepsOutline, AsLongAsHardlyACellChangedAndNothingMoved) {
 
 TEST(MoveToEstimate, TakesItsNumbersAndKeepsTheOutline) {
     PlaneEstimate estimate = drawn_estimate_of(wall_at(0, 0, 3), 0);
-    auto plane = derived_plane(estimate, {});
+    auto plane = derived_plane(estimate, kRules);
     ASSERT_TRUE(plane.has_value());
     const MapOutline outline = plane->outline;
     estimate.plane.d += 0.0005;

@@ -102,7 +102,7 @@ TEST(PlaneEstimate, OfAMapPlaneIsThatPlane) {
     EXPECT_EQ(estimate.keyframes, 12);
     EXPECT_LT(angle_between(estimate.plane.normal, plane.plane().normal), 1e-6);
     EXPECT_NEAR(estimate.plane.d, plane.plane().d, 1e-5);
-    EXPECT_NEAR(area(outline_of(estimate.grid, {})), static_cast<double>(plane.area), 0.05);
+    EXPECT_NEAR(area(outline_of(estimate.grid, samples::kOutline)), static_cast<double>(plane.area), 0.05);
     EXPECT_NEAR(estimate.moments.count, static_cast<double>(plane.inliers), 1e-3);
 }
 
@@ -124,7 +124,7 @@ TEST(PlaneEstimate, AbsorbingLosesNothing) {
     EXPECT_EQ(a.moments.count, all.count);
     EXPECT_LT((a.moments.mean() - all.mean()).norm(), 1e-12);
     EXPECT_EQ(a.keyframes, 2);
-    EXPECT_NEAR(area(outline_of(a.grid, {})), 1.8, 0.1);
+    EXPECT_NEAR(area(outline_of(a.grid, samples::kOutline)), 1.8, 0.1);
     EXPECT_TRUE(a.changed);
 }
 

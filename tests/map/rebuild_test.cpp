@@ -21,7 +21,7 @@ struct World {
     KeyframeStore store{200};
     FoldedPlanes folded{kRules, 200};
     PlaneIds ids;
-    RegionJoiner joiner{ObservationModel{}, 0.025};
+    RegionJoiner joiner{observation_model({}), 0.025};
     MapLosses losses;
 
     void see(int id, const std::vector<scene::Rectangle>& seen, const std::vector<int>& planes) {
@@ -35,7 +35,7 @@ struct World {
     PlaneSet rebuilt(int threads = 1) {
         PlaneSet planes(kRules, 200);
         Rebuild rebuild(store, folded, ids, joiner.model());
-        rebuild.join(planes, joiner, SurfaceRules{});
+        rebuild.join(planes, joiner, surface_rules({}));
         rebuild.draw(planes, joiner, FreeSpace(0.05), threads);
         rebuild.carry_over_ids(planes);
         return planes;
@@ -69,8 +69,8 @@ TEST(Rebuild, DoesNotDependOnWhatThePlanesWereBefore) {
         ASSERT_EQ(other->estimates().size(), 1u);
         EXPECT_EQ(other->estimates()[0].plane.normal, a.estimates()[0].plane.normal);
         EXPECT_EQ(other->estimates()[0].plane.d, a.estimates()[0].plane.d);
-        EXPECT_EQ(area(outline_of(other->estimates()[0].grid, {})),
-                  area(outline_of(a.estimates()[0].grid, {})));
+        EXPECT_EQ(area(outline_of(other->estimates()[0].grid, samples::kOutline)),
+                  area(outline_of(a.estimates()[0].grid, samples::kOutline)));
     }
 }
 

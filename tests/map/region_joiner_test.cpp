@@ -14,7 +14,7 @@ using samples::stored_at;
 using samples::wall_at;
 
 TEST(RegionJoiner, PointsOfAllRegionsAreInThePlanes) {
-    RegionJoiner joiner({}, 0.025);
+    RegionJoiner joiner(observation_model({}), 0.025);
     PlaneSet planes(kRules, 200);
     PlaneIds ids;
     Moments all;
@@ -38,7 +38,7 @@ TEST(RegionJoiner, PointsOfAllRegionsAreInThePlanes) {
 }
 
 TEST(RegionJoiner, JoinsThePlaneThatItIsTold) {
-    RegionJoiner joiner({}, 0.025);
+    RegionJoiner joiner(observation_model({}), 0.025);
     PlaneSet planes(kRules, 200);
     const StoredKeyframe keyframe = stored_at(Pose::Identity(), {wall_at(0, 0, 3)});
     const Observation seen(keyframe, keyframe.regions[0]);
@@ -54,7 +54,7 @@ TEST(RegionJoiner, JoinsThePlaneThatItIsTold) {
 }
 
 TEST(RegionJoiner, DrawsTheOutlineAndCountsWhatIsNew) {
-    RegionJoiner joiner({}, 0.025);
+    RegionJoiner joiner(observation_model({}), 0.025);
     PlaneSet planes(kRules, 200);
     const StoredKeyframe keyframe = stored_at(Pose::Identity(), {wall_at(0, 0, 3)});
     const Observation seen(keyframe, keyframe.regions[0]);
@@ -63,7 +63,7 @@ TEST(RegionJoiner, DrawsTheOutlineAndCountsWhatIsNew) {
     const int cells = joiner.draw(plane, seen.world_from_box(), seen.region, keyframe, 1);
     EXPECT_NEAR(cells, 1600, 90);
     EXPECT_EQ(joiner.draw(plane, seen.world_from_box(), seen.region, keyframe, 1), 0);
-    EXPECT_NEAR(area(outline_of(plane.grid, {})), 1, 0.06);
+    EXPECT_NEAR(area(outline_of(plane.grid, samples::kOutline)), 1, 0.06);
 }
 
 }  // namespace

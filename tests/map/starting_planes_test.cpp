@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/scene.hpp"
+#include "map/estimates.hpp"
 #include "map/evidence_shape.hpp"
 
 namespace planemap::map {
@@ -27,7 +28,8 @@ TEST(StartingPlanes, AreThoseOfTheMap) {
     for (std::size_t i = 0; i < 3; ++i) {
         EXPECT_EQ(start.planes[i].id, map.planes[i].id);
         EXPECT_EQ(start.planes[i].grid.cell_m(), 0.025);
-        EXPECT_NEAR(area(outline_of(start.planes[i].grid, {})), static_cast<double>(map.planes[i].area), 0.2);
+        EXPECT_NEAR(area(outline_of(start.planes[i].grid, samples::kOutline)),
+                    static_cast<double>(map.planes[i].area), 0.2);
     }
     EXPECT_EQ(start.refused, 0u);
     EXPECT_EQ(start.coarsened, 0u);

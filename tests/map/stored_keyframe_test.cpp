@@ -3,12 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include "map/wall_and_plate.hpp"
+#include "core/wall_and_plate.hpp"
 
 namespace planemap::map {
 namespace {
 
-using samples::two_regions;
+using scene::two_regions;
 
 TEST(StoredKeyframe, KeepsRegionsToAMicrometreAndOutlinesToAMillimetre) {
     const std::vector<PlanarRegion> regions = two_regions();

@@ -26,7 +26,7 @@ struct World {
         std::vector<Rectangle> rectangles;
         for (const auto& [rectangle, plane] : view) rectangles.push_back(rectangle);
         const StoredKeyframe& keyframe = keyframes.emplace_back(stored_at(Pose::Identity(), rectangles));
-        RegionJoiner joiner({}, 0.025);
+        RegionJoiner joiner(observation_model({}), 0.025);
         for (std::size_t i = 0; i < view.size(); ++i) {
             const Observation observed(keyframe, keyframe.regions[i]);
             const std::size_t known = planes.estimates().size();
@@ -37,7 +37,7 @@ struct World {
         }
     }
     std::size_t united() {
-        unite_surfaces(planes, seen, {});
+        unite_surfaces(planes, seen, *surface_rules({}));
         return planes.estimates().size();
     }
 };
@@ -113,7 +113,7 @@ TEST(Surfaces, BothSidesOfADoorLeafStayTwo) {
     const StoredKeyframe& keyframe = world.keyframes.emplace_back(stored_at(
         scene::camera_at({0, 0, 6}) * Pose(Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitY())),
         {back}));
-    RegionJoiner joiner({}, 0.025);
+    RegionJoiner joiner(observation_model({}), 0.025);
     const Observation observed(keyframe, keyframe.regions[0]);
     joiner.join(world.planes, PlaneSet::none(), 1, observed);
     world.seen.push_back({2, &keyframe, 0, 1, observed.world_from_box()});

@@ -5,17 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <random>
 #include <utility>
 #include <vector>
 
+#include "core/geometry/angle.hpp"
 #include "segmentation/scene.hpp"
 
 namespace planemap::segmentation {
 namespace {
-
-constexpr double kDegrees = std::numbers::pi / 180;
 
 Segmentation segment(const DepthImage& depth, const CameraInfo& camera, const CellOptions& options = {}) {
     Segmentation out;
@@ -45,7 +43,7 @@ TEST_P(NoisyWall, IsOneRegionWithTheRightPlane) {
         const Segmentation out = segment(depth, camera);
         ASSERT_EQ(out.regions.size(), 1u);
         const PlanarRegion& wall = out.regions[0];
-        EXPECT_LT(angle_between(wall.plane.normal, truth.normal), 0.1 * kDegrees);
+        EXPECT_LT(angle_between(wall.plane.normal, truth.normal), radians(0.1));
         EXPECT_NEAR(wall.plane.d, truth.d, 0.002 * truth.d);
         EXPECT_GT(wall.moments.count, 0.97 * static_cast<double>(depth.pixels.size()));
         EXPECT_EQ(wall.outline.rings.size(), 1u);
@@ -55,8 +53,7 @@ TEST_P(NoisyWall, IsOneRegionWithTheRightPlane) {
 TEST(CellsTest, BoxOnAFloorIsThreePlanes) {
     const CameraInfo camera = scene::camera();
     // Looking down at the floor by 40 degrees; the box stands on it.
-    const Eigen::Matrix3d view =
-        Eigen::AngleAxisd(40 * kDegrees, Eigen::Vector3d::UnitX()).toRotationMatrix();
+    const Eigen::Matrix3d view = Eigen::AngleAxisd(radians(40), Eigen::Vector3d::UnitX()).toRotationMatrix();
     const Eigen::Vector3d up = view * Eigen::Vector3d(0, -1, 0), towards = view * Eigen::Vector3d(0, 0, -1);
     const Eigen::Vector3d foot(0, 0.2, 2);  // middle of the front's lower edge
     const Plane floor{up, -up.dot(foot)}, top{up, -up.dot(foot + 0.4 * up)},
@@ -139,7 +136,7 @@ TEST(CellsTest, MomentsAreThoseOfTheLabelledPixels) {
         EXPECT_EQ(region.moments.count, expected.count);
         EXPECT_LT((region.moments.sum - expected.sum).norm(), 1e-6 * expected.sum.norm());
         EXPECT_LT((region.moments.scatter - expected.scatter).norm(), 1e-6 * expected.scatter.norm());
-        EXPECT_LT(angle_between(fit_plane(expected).plane.normal, region.plane.normal), 1 * kDegrees);
+        EXPECT_LT(angle_between(fit_plane(expected).plane.normal, region.plane.normal), radians(1));
         EXPECT_NEAR(region.rms, fit_plane(expected).rms, 0.1 * region.rms);
     }
 }
@@ -285,7 +282,7 @@ TEST(CellsTest, NoiseOfTheSensorDecidesWhichCellsAreFlat) {
     camera.noise.quadratic_per_m *= 5;
     const Segmentation out = segment(depth, camera);
     ASSERT_EQ(out.regions.size(), 1u);
-    EXPECT_LT(angle_between(out.regions[0].plane.normal, wall.normal), 0.5 * kDegrees);
+    EXPECT_LT(angle_between(out.regions[0].plane.normal, wall.normal), radians(0.5));
     EXPECT_GT(scene::labelled_share(out), 0.9);
 }
 

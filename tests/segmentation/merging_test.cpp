@@ -6,16 +6,16 @@
 
 #include <cmath>
 #include <functional>
-#include <numbers>
+
+#include "core/geometry/angle.hpp"
 
 namespace planemap::segmentation {
 namespace {
 
 constexpr double kCell = 0.014;  // width, normalised coordinates
-constexpr double kRadians = std::numbers::pi / 180;
 
 MergeRules rules() {
-    return {0.013, 1.9, 30 * kRadians, kCell, DepthNoise{}};
+    return {0.013, 1.9, radians(30), kCell, DepthNoise{}};
 }
 
 /// A region of columns x rows cells from normalised coordinates (x, y) on, all exactly on the plane.

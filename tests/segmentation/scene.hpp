@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/camera.hpp"
+#include "core/geometry/angle.hpp"
 #include "core/geometry/moments.hpp"
 #include "core/image.hpp"
 #include "segmentation/segmenter.hpp"
@@ -93,7 +94,7 @@ inline DepthImage render(const CameraInfo& info, const std::vector<Surface>& sur
 inline const PlanarRegion* find(const Segmentation& segmentation, const Plane& plane, double angle_deg = 2,
                                 double distance_m = 0.03) {
     for (const PlanarRegion& region : segmentation.regions) {
-        if (angle_between(region.plane.normal, plane.normal) < angle_deg * 0.0174533 &&
+        if (angle_between(region.plane.normal, plane.normal) < radians(angle_deg) &&
             std::abs(plane.signed_distance(region.moments.mean())) < distance_m)
             return &region;
     }

@@ -6,7 +6,7 @@
 #include <limits>
 #include <optional>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "simulator/sensor_model.hpp"
 #include "simulator/simulated_source.hpp"
 

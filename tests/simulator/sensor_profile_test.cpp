@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "core/sensor_preset.hpp"
 #include "core/undistortion.hpp"
 #include "simulator/simulated_source.hpp"

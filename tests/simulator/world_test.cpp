@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 
 namespace planemap::simulator {
 namespace {

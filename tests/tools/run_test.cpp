@@ -9,8 +9,8 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "core/angle.hpp"
 #include "core/files.hpp"
+#include "core/geometry/angle.hpp"
 #include "core/trajectory.hpp"
 #include "data_folder.hpp"
 #include "messages/channels.hpp"

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <random>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 
 namespace planemap::bench_map {
 

@@ -9,6 +9,7 @@
 #include "benchmark/child.hpp"
 #include "benchmark/choices.hpp"
 #include "benchmark/rendering.hpp"
+#include "core/geometry/angle.hpp"
 #include "evaluate/closure_judge.hpp"
 #include "sensor/source.hpp"
 

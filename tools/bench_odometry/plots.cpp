@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <limits>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "results/table.hpp"
 
 namespace planemap::bench_odometry {

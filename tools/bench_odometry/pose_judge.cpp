@@ -7,7 +7,7 @@
 #include <cmath>
 #include <set>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 
 namespace planemap::bench_odometry {
 

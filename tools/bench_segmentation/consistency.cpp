@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "bench_segmentation/metrics.hpp"
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 
 namespace planemap::bench {
 

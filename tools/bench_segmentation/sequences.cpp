@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <tuple>
 
-#include "core/angle.hpp"
 #include "core/camera_file.hpp"
+#include "core/geometry/angle.hpp"
 #include "core/geometry/moments.hpp"
 #include "core/trajectory.hpp"
 #include "core/undistortion.hpp"

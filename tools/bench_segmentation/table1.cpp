@@ -6,7 +6,7 @@
 #include <set>
 
 #include "bench_segmentation/metrics.hpp"
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 
 namespace planemap::bench {
 

@@ -7,7 +7,7 @@
 #include <map>
 
 #include "bench_segmentation/local_normals.hpp"
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 
 namespace planemap::bench {
 

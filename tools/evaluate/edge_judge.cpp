@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "core/geometry/plane_intersection.hpp"
 #include "core/geometry/segment.hpp"
 #include "evaluate/statistics.hpp"
@@ -96,12 +96,12 @@ std::vector<Place> true_edges(const std::vector<TruePlane>& truth, double least_
 std::vector<Eigen::Vector3d> true_corners(const std::vector<TruePlane>& truth, double least_m2,
                                           double seen_m) {
     std::vector<Eigen::Vector3d> corners;
-    const double least_volume = std::pow(std::sin(kParallel_rad), 2);
+    const double least_span = least_volume(kParallel_rad);
     for (std::size_t i = 0; i < truth.size(); ++i) {
         for (std::size_t j = i + 1; j < truth.size(); ++j) {
             for (std::size_t k = j + 1; k < truth.size(); ++k) {
                 const std::array<const TruePlane*, 3> three{&truth[i], &truth[j], &truth[k]};
-                const auto p = common_point(three[0]->plane, three[1]->plane, three[2]->plane, least_volume);
+                const auto p = common_point(three[0]->plane, three[1]->plane, three[2]->plane, least_span);
                 if (p && std::all_of(three.begin(), three.end(), [&](const TruePlane* plane) {
                         return plane->visible.area() > least_m2 && is_seen_near(*plane, *p, seen_m);
                     }))

@@ -8,7 +8,7 @@
 #include <string>
 #include <tuple>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "core/geometry/rigid_fit.hpp"
 #include "core/validation.hpp"
 

@@ -4,14 +4,16 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
+#include "core/geometry/outline_frame.hpp"
+#include "core/geometry/same_plane.hpp"
 
 namespace planemap::evaluation {
 
 namespace {
 
 constexpr double kParallel_deg = 5, kLeastDistance_m = 0.3, kSameRoom_m = 6;
-constexpr double kMergeGap_m = 0.5, kLeastShare_m2 = 0.05;
+constexpr double kMergeGap_m = kSamePlaneGap_m, kLeastShare_m2 = 0.05;
 
 /// A plane of the map in the truth's world.
 struct Candidate {
@@ -35,8 +37,8 @@ std::vector<Candidate> candidates_of(const PlaneMap& map, const Pose& truth_from
 
 /// The candidate's outline on the true plane.
 PlaneRaster raster_on(const TruePlane& truth, const Candidate& candidate) {
-    return rasterised(projected(
-        candidate.outline, truth.world_from_plane.inverse(Eigen::Isometry) * candidate.truth_from_plane));
+    return rasterised(projected(truth.world_from_plane.inverse(Eigen::Isometry) * candidate.truth_from_plane,
+                                candidate.outline));
 }
 
 /// Square metres of the true plane's visible surface that the candidate covers.

@@ -6,7 +6,8 @@
 #include <optional>
 #include <set>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
+#include "core/geometry/outline_frame.hpp"
 
 namespace planemap::evaluation {
 
@@ -28,12 +29,11 @@ std::vector<Entry> entries_of(const PlaneMap& map) {
     std::vector<Entry> entries;
     for (const MapPlane& plane : map.planes) {
         if (plane.outline.empty() || !plane.normal.allFinite() || !plane.center.allFinite()) continue;
-        Entry entry{plane.id, plane.plane(), plane.world_from_plane(), {}, {}};
-        for (const Ring& ring : plane.outline.rings().rings)
-            for (const Eigen::Vector2d& v : ring) {
+        const Outline outline = plane.outline.rings();
+        Entry entry{plane.id, plane.plane(), plane.world_from_plane(), {}, bounds(outline)};
+        for (const Ring& ring : outline.rings)
+            for (const Eigen::Vector2d& v : ring)
                 entry.corners.push_back(entry.world_from_plane * Eigen::Vector3d(v.x(), v.y(), 0));
-                entry.bounds.extend(v);
-            }
         entries.push_back(std::move(entry));
     }
     return entries;

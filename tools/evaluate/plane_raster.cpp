@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/geometry/outline_frame.hpp"
+
 namespace planemap::evaluation {
 
 PlaneRaster::PlaneRaster(const Eigen::Vector2d& low, const Eigen::Vector2d& high, double cell)
@@ -24,18 +26,10 @@ Eigen::Vector2d PlaneRaster::centre() const {
     return sum / static_cast<double>(count());
 }
 
-Outline projected(Outline outline, const Pose& to_from_outline) {
-    for (Ring& ring : outline.rings)
-        for (Eigen::Vector2d& v : ring) v = (to_from_outline * Eigen::Vector3d(v.x(), v.y(), 0)).head<2>();
-    return outline;
-}
-
 PlaneRaster rasterised(const Outline& outline, double cell_m) {
     if (outline.vertex_count() == 0) return {};
-    Eigen::Vector2d low = Eigen::Vector2d::Constant(1e9), high = -low;
-    for (const Ring& ring : outline.rings)
-        for (const Eigen::Vector2d& v : ring) low = low.cwiseMin(v), high = high.cwiseMax(v);
-    PlaneRaster raster(low, high, cell_m);
+    const Eigen::AlignedBox2d box = bounds(outline);
+    PlaneRaster raster(box.min(), box.max(), cell_m);
     Outline in_cells = outline;
     for (Ring& ring : in_cells.rings)
         for (Eigen::Vector2d& v : ring) v = v / cell_m - Eigen::Vector2d(raster.x0, raster.y0);

@@ -29,9 +29,6 @@ struct PlaneRaster {
     Eigen::Vector2d centre() const;
 };
 
-/// The outline (metres) of one plane on another, whose frame it is turned into and projected along z of.
-Outline projected(Outline outline, const Pose& to_from_outline);
-
 /// The cells whose middle is inside the outline (metres).
 PlaneRaster rasterised(const Outline& outline, double cell_m = PlaneRaster::kCell_m);
 

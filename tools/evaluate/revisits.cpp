@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 
 namespace planemap::evaluation {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "evaluate/edge_judge.hpp"
 #include "evaluate/map_faces.hpp"
 #include "evaluate/statistics.hpp"

@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
+#include "core/geometry/outline_frame.hpp"
 #include "evaluate/readings.hpp"
 
 namespace planemap::evaluation {
@@ -20,13 +21,10 @@ SurfaceChecker::SurfaceChecker(const PlaneMap& map) {
                     plane.plane(),
                     plane.world_from_plane().inverse(Eigen::Isometry),
                     plane.outline.rings(),
-                    Eigen::Vector2d::Constant(1e9),
-                    Eigen::Vector2d::Constant(-1e9),
+                    {},
                     static_cast<double>(plane.area),
                     {}};
-        for (const Ring& ring : entry.outline.rings)
-            for (const Eigen::Vector2d& v : ring)
-                entry.low = entry.low.cwiseMin(v), entry.high = entry.high.cwiseMax(v);
+        entry.bounds = bounds(entry.outline);
         entries_.push_back(std::move(entry));
     }
     std::stable_sort(entries_.begin(), entries_.end(),
@@ -41,8 +39,7 @@ void SurfaceChecker::add(const DepthImage& depth, const CameraInfo& camera, cons
         for (Entry& entry : entries_) {
             if (std::abs(entry.plane.signed_distance(p_world)) > kReach_m) continue;
             const Eigen::Vector3d p = entry.plane_from_world * p_world;
-            const Eigen::Array2d xy = p.head<2>().array();
-            if ((xy < entry.low.array()).any() || (xy > entry.high.array()).any()) continue;
+            if (!entry.bounds.contains(p.head<2>().eval())) continue;
             if (contains(entry.outline, p.head<2>())) entry.moments.add(p);
         }
     });

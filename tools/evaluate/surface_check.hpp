@@ -35,7 +35,7 @@ class SurfaceChecker {
         Plane plane;
         Pose plane_from_world;
         Outline outline;
-        Eigen::Vector2d low, high;  ///< of the outline
+        Eigen::AlignedBox2d bounds;  ///< of the outline
         double area;
         Moments moments;  ///< in the plane's frame
     };

@@ -6,8 +6,9 @@
 #include <map>
 #include <opencv2/imgproc.hpp>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "core/geometry/box.hpp"
+#include "core/geometry/same_plane.hpp"
 #include "simulator/simulated_source.hpp"
 
 namespace planemap::evaluation {
@@ -15,8 +16,8 @@ namespace planemap::evaluation {
 namespace {
 
 constexpr double kSameAngle = radians(0.1), kSameDistance_m = 0.001;
-constexpr std::int64_t kEvery = 5;  // frames
-constexpr double kGap_m = 0.5;      // between parts of one plane
+constexpr std::int64_t kEvery = 5;          // frames
+constexpr double kGap_m = kSamePlaneGap_m;  // between parts of one plane
 
 bool same_plane(const Plane& a, const Plane& b, const Eigen::Vector3d& p) {
     return angle_between(a.normal, b.normal) <= kSameAngle &&

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "core/geometry/plane_intersection.hpp"
 #include "exports/parts.hpp"
 #include "measure/measures.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "report/comparison.hpp"
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "evaluate/plane_matching.hpp"
 #include "report/figures.hpp"
 #include "report/world_frames.hpp"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 #include "evaluate/statistics.hpp"
 #include "run/report_text.hpp"
 

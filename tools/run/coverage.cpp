@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "core/geometry/outline_index.hpp"
+#include "core/geometry/parity.hpp"
 #include "octomap/voxel_set.hpp"
 
 namespace planemap {
@@ -139,12 +140,7 @@ class RowInside {
             const auto column = static_cast<std::size_t>(raster.first_column(x));
             bits_[column / 64] ^= std::uint64_t{1} << (column % 64);
         }
-        std::uint64_t carried = 0;
-        for (std::uint64_t& word : bits_) {
-            for (const int shift : {1, 2, 4, 8, 16, 32}) word ^= word << shift;
-            word ^= carried;
-            carried = (word >> 63) != 0 ? ~std::uint64_t{0} : 0;
-        }
+        set_between_flips(bits_);
         // No sample lies behind the last column.
         if (raster.columns % 64 != 0)
             bits_.back() &= (std::uint64_t{1} << (raster.columns % 64)) - 1;

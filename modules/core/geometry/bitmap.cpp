@@ -6,17 +6,9 @@
 #include <bit>
 #include <cmath>
 
+#include "core/geometry/parity.hpp"
+
 namespace planemap {
-
-namespace {
-
-/// Bits that are set after an odd number of set bits, themselves included: prefix parity.
-std::uint64_t parity_up_to(std::uint64_t bits) {
-    for (const int shift : {1, 2, 4, 8, 16, 32}) bits ^= bits << shift;
-    return bits;
-}
-
-}  // namespace
 
 /// Each edge flips, in every row whose centre line it crosses, all cells to its right: what is flipped an odd
 /// number of times is inside. Only the first of them is marked here, the others follow at once for all edges.
@@ -41,12 +33,8 @@ void Bitmap::flip_right_of(Eigen::Vector2d a, Eigen::Vector2d b) {
 
 void Bitmap::set_between_flips() {
     for (int y = 0; y < rows_; ++y) {
-        std::uint64_t* words = bits_.data() + static_cast<std::ptrdiff_t>(y) * words_;
-        std::uint64_t carried = 0;  // all ones while inside
-        for (int w = 0; w < words_; ++w) {
-            words[w] = parity_up_to(words[w]) ^ carried;
-            carried = (words[w] >> 63) != 0 ? ~std::uint64_t{0} : 0;
-        }
+        planemap::set_between_flips(
+            {bits_.data() + static_cast<std::ptrdiff_t>(y) * words_, static_cast<std::size_t>(words_)});
     }
 }
 
@@ -103,6 +91,11 @@ Bitmap& Bitmap::operator|=(const Bitmap& other) {
 
 Bitmap& Bitmap::operator&=(const Bitmap& other) {
     for (std::size_t i = 0; i < bits_.size(); ++i) bits_[i] &= other.bits_[i];
+    return *this;
+}
+
+Bitmap& Bitmap::operator-=(const Bitmap& other) {
+    for (std::size_t i = 0; i < bits_.size(); ++i) bits_[i] &= ~other.bits_[i];
     return *this;
 }
 

@@ -67,6 +67,8 @@ class Bitmap {
     Bitmap closed(int r) const;
     Bitmap& operator|=(const Bitmap& other);  ///< of the same cells
     Bitmap& operator&=(const Bitmap& other);  ///< of the same cells
+    /// Without what is set in another one of the same cells.
+    Bitmap& operator-=(const Bitmap& other);
 
     /// The boundary of the set cells as rings in cell corners: cell (x, y) is the square [x, x+1] x [y, y+1].
     /// Outer rings are counter-clockwise (x right, y up), holes clockwise; cells that touch at a corner only

@@ -8,8 +8,8 @@
 
 namespace planemap {
 
-/// An outline's edges by bands of y, for questions in great number: the same answers as core/outline's, each
-/// from the edges of one band or a few.
+/// An outline's edges by bands of y, for questions in great number: the same answers as
+/// core/geometry/outline's, each from the edges of one band or a few.
 class OutlineIndex {
   public:
     explicit OutlineIndex(const Outline& outline);

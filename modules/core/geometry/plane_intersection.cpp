@@ -20,6 +20,10 @@ std::optional<Line> common_line(const Plane& a, const Plane& b, const Eigen::Vec
     return line.origin.allFinite() ? std::optional(line) : std::nullopt;
 }
 
+double least_volume(double angle_rad) {
+    return std::pow(std::sin(angle_rad), 2);
+}
+
 std::optional<Eigen::Vector3d> common_point(const Plane& a, const Plane& b, const Plane& c,
                                             double least_volume) {
     Eigen::Matrix3d normals;

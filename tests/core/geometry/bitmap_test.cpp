@@ -39,6 +39,15 @@ void expect_cells(const Bitmap& bits, const IsSet& is_set) {
         for (int x = -64; x < 128; ++x) ASSERT_EQ(bits.at(x, y), is_set(x + 64, y + 5)) << x << " " << y;
 }
 
+TEST(Bitmap, WithoutAnotherItHasWhatThatHasNot) {
+    const Twins a = random_twins(2, 0.5), b = random_twins(3, 0.5);
+    Bitmap left = a.bits;
+    left -= b.bits;
+    expect_cells(left, [&](int x, int y) { return a.mask.at(x, y) && !b.mask.at(x, y); });
+    left -= left;
+    EXPECT_EQ(left.count(), 0u);
+}
+
 TEST(Bitmap, HasTheCellsThatWereSet) {
     const Twins twins = random_twins(1, 0.5);
     expect_cells(twins.bits, [&](int x, int y) { return twins.mask.at(x, y); });

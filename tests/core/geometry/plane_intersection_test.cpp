@@ -35,6 +35,12 @@ TEST(PlaneIntersection, FlatPairsHaveNoLine) {
     EXPECT_FALSE(common_line(kFloor, broken, Eigen::Vector3d::Zero(), 1e-3));
 }
 
+TEST(PlaneIntersection, APointIsAsWellDefinedAsTheLineOfTheFlattestPair) {
+    EXPECT_NEAR(least_volume(std::acos(-1.0) / 2), 1, 1e-12) << "three planes square to each other";
+    EXPECT_NEAR(least_volume(kParallel_rad), std::sin(kParallel_rad) * std::sin(kParallel_rad), 1e-12);
+    EXPECT_EQ(least_volume(0), 0);
+}
+
 TEST(PlaneIntersection, ThreePlanesShareACorner) {
     const auto corner = common_point(kFloor, kWall, kOther, 0.1);
     ASSERT_TRUE(corner);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/geometry/inverse_depth.hpp"
+#include "core/inverse_depth.hpp"
 
 #include <bit>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/angle.hpp"
+#include "core/geometry/angle.hpp"
 
 #include <gtest/gtest.h>
 
