@@ -7,7 +7,7 @@
 
 namespace planemap::odometry {
 
-std::optional<Located> PaperMethod::locate(const PreparedFrame& frame, const Surroundings& known) {
+std::optional<Located> PaperMethod::locate(const PreparedFrame& frame, const References& known) {
     if (!frame.gray) return std::nullopt;
     std::vector<Feature> features = planar_features(frame);
     // The next frame is matched with this one's: without any it could not go on from here.
@@ -28,7 +28,7 @@ std::optional<Located> PaperMethod::locate(const PreparedFrame& frame, const Sur
 }
 
 std::optional<Track> PaperMethod::track(const std::vector<Feature>& features, const PreparedFrame& frame,
-                                        const Surroundings& known) const {
+                                        const References& known) const {
     const std::vector<PointTerm> matches =
         match_terms(last_, features, frame, options_.max_descriptor_distance);
     const std::optional<Pose> camera_from_last =
