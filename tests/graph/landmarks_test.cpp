@@ -166,6 +166,48 @@ TEST(Landmarks, NothingComesOfRegionsWithoutAPlane) {
     EXPECT_TRUE(landmarks.landmarks().empty());
 }
 
+/// What the graph weighs sightings by: a noisier sensor's are let go farther.
+TEST(Landmarks, ASensorOfTwiceTheNoiseWeighsLess) {
+    DepthNoise twice = kNoise;
+    twice.base_m *= 2;
+    twice.quadratic_per_m *= 2;
+    const LandmarkOptions options = landmark_options({});
+    const auto weight_of = [&](const DepthNoise& noise, double depth) {
+        Landmarks landmarks(options);
+        for (int node = 0; node < 2; ++node)
+            landmarks.add(node, {rectangle(Pose::Identity(), depth * kZ, 1.5 * kX, 1.0 * kY)},
+                          Pose::Identity(), noise);
+        return landmarks.shared().at(0).sqrt_weight;
+    };
+    for (const double depth : {1.0, 2.0, 4.0}) {
+        EXPECT_NEAR(weight_of(kNoise, depth), 1 / std::hypot(options.sigma_m, kNoise.sigma(depth)), 1e-9);
+        EXPECT_NEAR(weight_of(twice, depth), 1 / std::hypot(options.sigma_m, 2 * kNoise.sigma(depth)), 1e-9);
+    }
+    EXPECT_LT(weight_of(twice, 4), 0.55 * weight_of(kNoise, 4))
+        << "far away the sensor's noise is nearly all";
+}
+
+/// How far a drifted node is drawn back to the floor by its sightings, of 2 cm.
+TEST(Landmarks, ASensorOfTwiceTheNoiseDrawsTheGraphLess) {
+    DepthNoise twice = kNoise;
+    twice.base_m *= 2;
+    twice.quadratic_per_m *= 2;
+    const auto drawn = [&](const DepthNoise& noise) {
+        std::vector<Pose> poses(2, Pose::Identity());
+        poses[1].translation().z() = 0.02;
+        Landmarks landmarks(landmark_options({}));
+        const PlanarRegion seen = rectangle(Pose::Identity(), 4 * kZ, 1.5 * kX, 1.0 * kY);
+        for (int node = 0; node < 2; ++node) landmarks.add(node, {seen}, Pose::Identity(), noise);
+        const std::vector<PoseEdge> edges{{0, 1, poses[1], Matrix6d::Identity() / 0.02, false}};
+        std::vector<Landmark> planes = landmarks.landmarks();
+        optimise(poses, edges, 0, {}, &planes, landmarks.shared());
+        return 0.02 - poses[1].translation().z();
+    };
+    EXPECT_GT(drawn(kNoise), 0.001);
+    EXPECT_GT(drawn(twice), 0);
+    EXPECT_LT(drawn(twice), drawn(kNoise));
+}
+
 /// A walk over a floor with noisy odometry: the shared floor holds height, roll and pitch.
 TEST(Landmarks, ASharedFloorStopsDrift) {
     std::mt19937_64 random(7);
