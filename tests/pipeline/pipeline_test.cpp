@@ -22,6 +22,7 @@
 #include "run/input.hpp"
 #include "segmentation/outline_reach.hpp"
 #include "segmentation/segmentation.hpp"
+#include "sensor/sensor_shell.hpp"
 #include "simulator/simulated_source.hpp"
 #include "temporary_folder.hpp"
 
@@ -172,6 +173,23 @@ struct WeighedMap {
     }
 };
 
+/// A simulated camera that is said to have so many times the noise that it has.
+class SaidNoise : public FrameSource {
+  public:
+    SaidNoise(const std::string& name, double factor)
+        : source_(simulator::parse_simulator_name(name)), camera_(source_.camera()) {
+        camera_.noise.base_m *= factor;
+        camera_.noise.quadratic_per_m *= factor;
+    }
+    const CameraInfo& camera() const override { return camera_; }
+    std::optional<std::size_t> size() const override { return source_.size(); }
+    ReadResult next(SensorFrame& frame) override { return source_.next(frame); }
+
+  private:
+    simulator::SimulatedSource source_;
+    CameraInfo camera_;
+};
+
 /// The same frames, by a camera that is said to have this many times the noise.
 WeighedMap weighed_map(double noise) {
     const std::string name = "sim:office?frames=30&rate=10&width=320&height=240";
@@ -179,9 +197,6 @@ WeighedMap weighed_map(double noise) {
     messages::Bus bus("memq://");
     PipelineOptions options;
     options.with_octomap = false;
-    options.camera = source.camera();
-    options.camera->noise.base_m *= noise;
-    options.camera->noise.quadratic_per_m *= noise;
     options.poses.emplace();
     for (std::size_t i = 0; i < 30; ++i)
         options.poses->push_back({source.utime(i), source.world_from_color(source.utime(i))});
@@ -190,8 +205,10 @@ WeighedMap weighed_map(double noise) {
     bus.subscribe(messages::channels::kKeyframe, [&](const messages::RawMessage& message) {
         result.keyframes.push_back(messages::from_message(messages::decode<keyframe_t>(message.bytes)));
     });
-    const std::unique_ptr<Input> input = open_input(name, bus);
-    while (input->feed()) pipeline.settle();
+    sensor::SensorShellOptions pace;
+    pace.speed = 0;
+    sensor::SensorShell sensor(bus, std::make_unique<SaidNoise>(name, noise), pace);
+    while (sensor.poll() >= 0) pipeline.settle();
     pipeline.finish();
     result.map = pipeline.map().mapper().map();
     return result;
