@@ -91,7 +91,10 @@ ReadResult LiveSource::next(SensorFrame& frame) {
     }
     result.status = ReadResult::Status::kFrame;
     result.beside = new_fault();
+    const int resets = clock_.resets();
     frame.utime = clock_.host_time(live->depth_us, live->arrival_us);
+    if (clock_.resets() > resets)
+        ++result.lost["synchronisations with the camera's clock, which began again or jumped"];
     frame.depth = std::move(live->depth);
     if (live->color.empty()) return result;
     frame.color_utime = frame.utime + live->color_us - live->depth_us;

@@ -6,6 +6,8 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "core/yuv.hpp"
+
 namespace planemap::camera {
 
 namespace {
@@ -14,16 +16,6 @@ using openni::PixelFormat;
 
 /// Between depth and colour of PrimeSense's design, metres.
 constexpr double kBaseline_m = 0.025;
-
-std::uint8_t byte(double value) {
-    return static_cast<std::uint8_t>(std::clamp(std::lround(value), 0L, 255L));
-}
-
-/// ITU-R BT.601, full range.
-Rgb rgb_of(int y, int u, int v) {
-    const double blue = u - 128, red = v - 128;
-    return {byte(y + 1.402 * red), byte(y - 0.344136 * blue - 0.714136 * red), byte(y + 1.772 * blue)};
-}
 
 PinholeCamera pinhole(const openni::VideoStream& stream) {
     const openni::VideoMode mode = stream.getVideoMode();
@@ -129,8 +121,8 @@ RgbImage color_image(const openni::VideoFrameRef& frame) {
                 out[u] = {row[u], row[u], row[u]};
             } else {  // four bytes for two pixels: U Y V Y, or Y U Y V
                 const std::uint8_t* const two = row + 4 * (u / 2);
-                out[u] = luma_first ? rgb_of(two[2 * (u % 2)], two[1], two[3])
-                                    : rgb_of(two[2 * (u % 2) + 1], two[0], two[2]);
+                out[u] = luma_first ? rgb_of_yuv(two[2 * (u % 2)], two[1], two[3])
+                                    : rgb_of_yuv(two[2 * (u % 2) + 1], two[0], two[2]);
             }
         }
     }

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/joined.hpp"
 #include "core/json_file.hpp"
 #include "core/lens_distortion.hpp"
 #include "core/nearest_name.hpp"
@@ -25,12 +26,6 @@ using nlohmann::json;
 std::string shown(const json& value) {
     std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
     return shown_text(text, 60);
-}
-
-std::string joined(const std::vector<std::string>& names) {
-    std::string text;
-    for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-    return text;
 }
 
 /// What a number may be.

@@ -4,8 +4,6 @@
 #include <spdlog/spdlog.h>
 
 #include <chrono>
-#include <iterator>
-#include <map>
 
 #include "messages/channels.hpp"
 #include "messages/convert.hpp"
@@ -25,7 +23,7 @@ GraphShell::GraphShell(messages::Bus& bus, const GraphOptions& options, Optimisi
                        const GraphFiles& files)
     : bus_(bus), optimising_(optimising), graph_(options), output_(files.output) {
     if (!files.journal.empty()) {
-        journal_ = std::make_unique<messages::Journal>(files.journal);
+        journal_ = std::make_unique<GraphJournal>(files.journal);
         resume();
     }
     // Keyframes are few and each counts: a long queue.
@@ -70,8 +68,7 @@ void GraphShell::write_trajectories() {
 void GraphShell::on_keyframe(const messages::RawMessage& message) {
     const keyframe_t received = messages::decode<keyframe_t>(message.bytes);
     const Keyframe keyframe = messages::from_message(received);
-    if (came_again(received)) return status_.count_loss("keyframes that came twice");
-    if (!keyframe_guard_.admits(received.session, received.seq, received.utime, message.bytes)) return;
+    if (!keyframe_guard_.admits(received, message.bytes, lately_.contains(received.id))) return;
     // One that begins a chain beyond our ids is of an odometry that heard of us.
     if (keyframe.chain == keyframe.id && graph_.expects(keyframe.id)) odometry_started_again_ = false;
     if (odometry_started_again_ || !graph_.expects(keyframe.id)) {
@@ -81,7 +78,7 @@ void GraphShell::on_keyframe(const messages::RawMessage& message) {
     }
     add(keyframe);
     took(received);
-    if (journal_) journal_->add(message.channel, message.bytes);
+    if (journal_) journal_->add(message.bytes);
     publish();
     start_if_due();
 }
@@ -115,63 +112,29 @@ void GraphShell::add(const Keyframe& keyframe) {
     messages::remark_new_part(status_, keyframe.id, keyframe.previous_id, keyframe.utime);
 }
 
-/// One that the graph has: odometry sends the last ones again when a module was started again.
-bool GraphShell::came_again(const keyframe_t& received) const {
-    return received.session != 0 && received.session == last_session_ && lately_.contains(received.id);
-}
-
 void GraphShell::took(const keyframe_t& received) {
     constexpr std::size_t kLately = 256;
-    if (received.session != last_session_) lately_.clear();
-    last_session_ = received.session;
+    if (received.session != keyframe_guard_.session()) lately_.clear();
+    keyframe_guard_.took(received);
     lately_.insert(received.id);
     if (lately_.size() > kLately) lately_.erase(lately_.begin());
 }
 
 /// Takes the keyframes of the process before.
 void GraphShell::resume() {
-    for (const std::string& complaint : journal_->complaints()) spdlog::warn("graph: {}", complaint);
-    messages::LogEvent last;
-    journal_->replay([&](const messages::LogEvent& event) {
-        try {
-            const keyframe_t received = messages::decode<keyframe_t>(event.bytes);
-            const Keyframe keyframe = messages::from_message(received);
-            if (!graph_.expects(keyframe.id)) return;
-            add(keyframe);
-            took(received);
-            last = event;
-        } catch (const messages::MessageError& error) {
-            bus_.complaints().add(journal_->file().string() + ": a keyframe left out: " + error.what());
-        }
+    const auto newest = journal_->replay(bus_.complaints(), [this](const keyframe_t& received) {
+        const Keyframe keyframe = messages::from_message(received);
+        if (!graph_.expects(keyframe.id)) return false;
+        add(keyframe);
+        took(received);
+        return true;
     });
-    if (last.bytes.empty()) return;
-    const keyframe_t newest = messages::decode<keyframe_t>(last.bytes);
-    keyframe_guard_.resume(newest.session, newest.seq, newest.utime, last.bytes);
+    if (!newest) return;
+    keyframe_guard_.resume(newest->message, newest->bytes);
     spdlog::info("graph: goes on with {} keyframes of {}", graph_.trajectory().keyframes.size(),
                  journal_->file().string());
     publish();
     start_if_due();
-}
-
-/// Makes the journal as small as the graph is: without the keyframes that went for newer ones of their place.
-/// An edge from one of these leads from the newest before it that is left, as the graph has both.
-void GraphShell::compact() {
-    std::map<int, Pose> poses;
-    for (const KeyframePose& keyframe : graph_.trajectory().keyframes)
-        poses[keyframe.id] = keyframe.world_from_camera;
-    journal_->compact([&](messages::LogEvent& event) {
-        keyframe_t message = messages::decode<keyframe_t>(event.bytes);
-        const auto here = poses.find(message.id);
-        if (here == poses.end()) return false;
-        if (message.previous_id < 0 || poses.contains(message.previous_id) || here == poses.begin())
-            return true;
-        const auto before = std::prev(here);
-        Keyframe keyframe = messages::from_message(message);
-        keyframe.previous_id = before->first;
-        keyframe.previous_from_camera = before->second.inverse(Eigen::Isometry) * here->second;
-        event.bytes = messages::to_bytes(messages::to_message(keyframe, message.seq, message.session));
-        return true;
-    });
 }
 
 /// Says what a refused keyframe looks like: of the first, and when some come in a row.
@@ -202,10 +165,7 @@ void GraphShell::start_if_due() {
 int GraphShell::poll() {
     constexpr int kIdleMs = 100, kRunningMs = 10;
     republish_if_due();
-    if (journal_) {
-        if (journal_->is_due_to_compact()) compact();
-        if (const auto news = journal_->news()) status_.remark("journal", *news);
-    }
+    if (journal_) journal_->tend(graph_.trajectory(), status_);
     if (!running_) return kIdleMs;
     if (done_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return kRunningMs;
     apply_finished();

@@ -11,8 +11,9 @@
 
 #include "core/frame_poses.hpp"
 #include "graph/graph.hpp"
+#include "graph/graph_journal.hpp"
 #include "messages/channels.hpp"
-#include "messages/journal.hpp"
+#include "messages/keyframe_guard.hpp"
 #include "messages/process.hpp"
 #include "messages/stream_guard.hpp"
 
@@ -54,10 +55,8 @@ class GraphShell : public messages::Shell {
 
     void on_keyframe(const messages::RawMessage& message);
     void add(const Keyframe& keyframe);
-    bool came_again(const keyframe_t& received) const;
     void took(const keyframe_t& received);
     void resume();
-    void compact();
     void on_surfaces(const messages::RawMessage& message);
     void adopt(const Surfaces& surfaces);
     void apply_finished();
@@ -75,7 +74,7 @@ class GraphShell : public messages::Shell {
     std::optional<GraphOptimisation> running_;  ///< owned by the background until done_ is ready
     std::future<void> done_;
     messages::ModuleStatus status_{"graph"};
-    messages::StreamGuard keyframe_guard_{messages::channels::kKeyframe, "keyframes", status_};
+    messages::KeyframeGuard keyframe_guard_{status_};
     messages::StreamGuard surfaces_guard_{messages::channels::kSurfaces, "surfaces of the map", status_,
                                           false};
     std::optional<Surfaces> waiting_surfaces_;  ///< that came while the background was at work
@@ -86,12 +85,11 @@ class GraphShell : public messages::Shell {
     std::optional<int> last_refused_;  ///< id of the last keyframe that was left out
     int refused_in_row_ = 0;           ///< with ids one after the other
     bool odometry_started_again_ = false;
-    std::unique_ptr<messages::Journal> journal_;  ///< null without
+    std::unique_ptr<GraphJournal> journal_;  ///< null without
     std::filesystem::path output_;
     std::deque<FramePose> frames_;  ///< where the frames were, at most kMostFrames
     KeyframePoses poses_;
-    std::int64_t last_session_ = 0;  ///< of the last keyframe that was taken
-    std::set<int> lately_;           ///< ids of the last ones that were taken
+    std::set<int> lately_;  ///< ids of the last keyframes that were taken
 };
 
 }  // namespace planemap::graph

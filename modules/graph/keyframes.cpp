@@ -18,10 +18,10 @@ int Keyframes::newest_of_chain(int chain) const {
     return -1;
 }
 
-void Keyframes::add(KeyframeNode node, const Pose& world_from_camera, int hangs_on) {
+void Keyframes::add(KeyframeNode node, const Pose& world_from_camera, int parent) {
     nodes_.push_back(std::move(node));
     poses_.push_back(world_from_camera);
-    hangs_on_.push_back(hangs_on);
+    parents_.push_back(parent);
 }
 
 void Keyframes::carry(const std::vector<bool>& moving, const Pose& move) {
@@ -35,19 +35,18 @@ std::vector<Pose> Keyframes::follow(const std::vector<Pose>& optimised) {
     moves.reserve(poses_.size());
     for (std::size_t i = 0; i < poses_.size(); ++i) {
         const Pose before = poses_[i];
-        poses_[i] =
-            i < optimised.size() ? optimised[i] : orthonormalised(moves[at(hangs_on_[i])] * poses_[i]);
+        poses_[i] = i < optimised.size() ? optimised[i] : orthonormalised(moves[at(parents_[i])] * poses_[i]);
         moves.push_back(poses_[i] * before.inverse(Eigen::Isometry));
     }
     return moves;
 }
 
 void Keyframes::remove(int node, int keeper) {
-    for (int& base : hangs_on_) {
+    for (int& base : parents_) {
         if (base == node) base = keeper;
         if (base > node) --base;
     }
-    hangs_on_.erase(hangs_on_.begin() + node);
+    parents_.erase(parents_.begin() + node);
     nodes_.erase(nodes_.begin() + node);
     poses_.erase(poses_.begin() + node);
 }

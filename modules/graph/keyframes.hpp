@@ -42,7 +42,7 @@ class Keyframes {
 
     /// Adds the newest. It hangs on the node by which it was placed (-1: none): until an optimisation knows
     /// it, it follows that one. Precondition: a higher id than all others.
-    void add(KeyframeNode node, const Pose& world_from_camera, int hangs_on);
+    void add(KeyframeNode node, const Pose& world_from_camera, int parent);
 
     /// Moves the nodes marked in `moving` as one: `move` maps the world to the world.
     void carry(const std::vector<bool>& moving, const Pose& move);
@@ -60,7 +60,7 @@ class Keyframes {
   private:
     std::vector<KeyframeNode> nodes_;  ///< ascending id
     std::vector<Pose> poses_;          ///< world_from_camera of each
-    std::vector<int> hangs_on_;        ///< node that each was placed by; -1 for the first
+    std::vector<int> parents_;         ///< node that each was placed by; -1 for the first
 };
 
 }  // namespace planemap::graph

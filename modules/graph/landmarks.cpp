@@ -65,13 +65,11 @@ class LandmarkSum {
 }  // namespace
 
 LandmarkOptions landmark_options(const GraphOptions& options) {
-    LandmarkOptions out;
-    out.min_extent_m = options.landmark_extent_m;
-    out.max_angle_deg = options.landmark_angle_deg;
-    out.max_distance_m = options.landmark_distance_m;
-    out.max_gap_m = options.landmark_gap_m;
-    out.sigma_m = options.landmark_sigma_m;
-    return out;
+    return {.min_extent_m = options.landmark_extent_m,
+            .max_angle_deg = options.landmark_angle_deg,
+            .max_distance_m = options.landmark_distance_m,
+            .max_gap_m = options.landmark_gap_m,
+            .sigma_m = options.landmark_sigma_m};
 }
 
 Eigen::Vector4d sighting_error(const Sighting& sighting, const Pose& world_from_camera,

@@ -31,13 +31,13 @@ struct Sighting {
     double sqrt_weight = 0;                        ///< of each point's distance, 1/metres
 };
 
+/// See landmark_options(): the defaults are GraphOptions'.
 struct LandmarkOptions {
-    double min_extent_m =
-        0.25;                  ///< standard deviation along the shorter axis: smaller regions fix no rotation
-    double max_angle_deg = 8;  ///< between a region and its landmark
-    double max_distance_m = 0.06;  ///< RMS of the region's four points to its landmark
-    double max_gap_m = 0.5;        ///< between their boxes
-    double sigma_m = 0.01;         ///< of a point's distance, on top of the sensor's noise
+    double min_extent_m;    ///< standard deviation along the shorter axis: smaller regions fix no rotation
+    double max_angle_deg;   ///< between a region and its landmark
+    double max_distance_m;  ///< RMS of the region's four points to its landmark
+    double max_gap_m;       ///< between their boxes
+    double sigma_m;         ///< of a point's distance, on top of the sensor's noise
 };
 
 /// What the graph's options say of them.

@@ -192,7 +192,7 @@ bool LoopSearch::fits_surroundings(int node, const Keyframes& keyframes, const T
         keyframes.pose(node) * node_from_newest * keyframes.pose(newest).inverse(Eigen::Isometry);
     // Where odometry may have gone astray all the way in between, a node belongs to the nearer end only.
     const bool apart = 2 * drifts[at(node)].metres > moves_by;
-    std::vector<PlacedView> older, newer;
+    std::vector<SurroundingView> older, newer;
     for (int i = 0; i < newest; ++i) {
         if (i == node) continue;
         const double to_newest = drifts[at(i)].metres, to_node = of_node[at(i)].metres;

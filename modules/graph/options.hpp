@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/option_list.hpp"
+#include "places/verification_options.hpp"
 
 namespace planemap::graph {
 
@@ -14,9 +15,9 @@ struct GraphOptions {
     int place_candidates = 3;
     int max_closures = 2;
     double max_place_drift_m = 1.0;
-    double matching_ratio = 0.85;
-    int min_inliers = 25;
-    double min_inlier_ratio = 0.35;
+    double matching_ratio = places::MatchingOptions{}.ratio;
+    int min_inliers = places::VerificationOptions{}.min_inliers;
+    double min_inlier_ratio = places::VerificationOptions{}.min_inlier_ratio;
     double surroundings_from_m = 0.3;
 
     int max_alike = 2;
@@ -39,14 +40,11 @@ struct GraphOptions {
     int optimise_every = 0;
 
     // Fixed: nobody can tell how to set these without reading the code.
-    static constexpr double min_appearance = 0.02;      ///< share of the new keyframe's rare features that a
-                                                        ///< candidate for a loop closure has too
-    static constexpr double min_overlap = 0.3;          ///< share of points in view, for a candidate by place
-    static constexpr int max_descriptor_distance = 64;  ///< bits in which two descriptors of one point differ
-    static constexpr double bearing_sigma = 0.003;     ///< of the features' points across their rays, radians
-    static constexpr double min_visible_ratio = 0.12;  ///< inliers, of the points that both views should see
-    static constexpr double max_contradiction = 0.25;  ///< share of plane samples that the other view saw
-                                                       ///< through
+    static constexpr double min_appearance = 0.02;  ///< share of the new keyframe's rare features that a
+                                                    ///< candidate for a loop closure has too
+    static constexpr double min_overlap = 0.3;      ///< share of points in view, for a candidate by place
+    static constexpr double max_contradiction =     ///< share of plane samples that the other view saw
+        places::VerificationOptions{}.max_contradiction;  ///< through
     static constexpr double place_share = 0.08;  ///< keyframes are of one place when they stand nearer than
                                                  ///< this share of the depth that they see,
     static constexpr double place_rad = 0.17;    ///< and are turned by less

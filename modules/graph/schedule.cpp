@@ -5,10 +5,10 @@
 
 namespace planemap::graph {
 
-void Schedule::keyframe_added(const News& news) {
-    disagreement_ = std::max(disagreement_, news.disagreement);
+void Schedule::keyframe_added(const Addition& addition) {
+    disagreement_ = std::max(disagreement_, addition.disagreement);
     ++since_started_;
-    is_due_ = is_due_ || asks(news);
+    is_due_ = is_due_ || asks(addition);
 }
 
 void Schedule::landmarks_changed(double disagreement) {
@@ -17,12 +17,12 @@ void Schedule::landmarks_changed(double disagreement) {
 
 /// At once when a loop closure is far from the present poses. What pulls less waits the longer the larger the
 /// graph is, so that the cost a keyframe stays flat; PoseGraph::finish() makes up for what waits.
-bool Schedule::asks(const News& news) const {
+bool Schedule::asks(const Addition& addition) const {
     constexpr int kNodesAKeyframe = 50;
-    if (options_.optimise_every > 0 && news.nodes % options_.optimise_every == 0) return true;
-    if (is_far(news.worst_new_loop)) return true;
-    return (news.new_loops || disagreement_ > options_.landmark_trigger) &&
-           since_started_ > news.nodes / kNodesAKeyframe;
+    if (options_.optimise_every > 0 && addition.nodes % options_.optimise_every == 0) return true;
+    if (is_far(addition.worst_new_loop)) return true;
+    return (addition.new_loops || disagreement_ > options_.landmark_trigger) &&
+           since_started_ > addition.nodes / kNodesAKeyframe;
 }
 
 bool Schedule::is_far(double whitened_error) const {

@@ -13,13 +13,13 @@ class Schedule {
     explicit Schedule(const GraphOptions& options) : options_(options) {}
 
     /// What a new keyframe brought.
-    struct News {
+    struct Addition {
         int nodes = 0;              ///< in the graph, with it
         double disagreement = 0;    ///< of its planes with the landmarks, standard deviations
         bool new_loops = false;     ///< there are loop closures that no optimisation knows
         double worst_new_loop = 0;  ///< whitened error of the worst of these
     };
-    void keyframe_added(const News& news);
+    void keyframe_added(const Addition& addition);
     /// Others than before see a landmark: how far they disagree, standard deviations.
     void landmarks_changed(double disagreement);
 
@@ -41,7 +41,7 @@ class Schedule {
     bool is_far(double whitened_error) const;
 
   private:
-    bool asks(const News& news) const;
+    bool asks(const Addition& addition) const;
 
     GraphOptions options_;
     double disagreement_ = 0;  ///< the largest since the last optimisation

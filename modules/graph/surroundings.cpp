@@ -19,12 +19,12 @@ constexpr std::size_t kMostViews = 60;
 constexpr double kSpacing = 0.4;  // metres and radians between two views
 
 /// Views that differ from each other, those of least drift first.
-std::vector<PlacedView> thinned(std::span<const PlacedView> views) {
-    std::vector<PlacedView> sorted(views.begin(), views.end()), thinned;
+std::vector<SurroundingView> thinned(std::span<const SurroundingView> views) {
+    std::vector<SurroundingView> sorted(views.begin(), views.end()), thinned;
     std::stable_sort(sorted.begin(), sorted.end(),
                      [](const auto& a, const auto& b) { return a.drift_m < b.drift_m; });
-    for (const PlacedView& view : sorted) {
-        const bool beside = std::any_of(thinned.begin(), thinned.end(), [&](const PlacedView& kept) {
+    for (const SurroundingView& view : sorted) {
+        const bool beside = std::any_of(thinned.begin(), thinned.end(), [&](const SurroundingView& kept) {
             const Pose step = kept.world_from_camera.inverse(Eigen::Isometry) * view.world_from_camera;
             return step.translation().norm() < kSpacing && rotation_angle(step) < kSpacing;
         });
@@ -34,15 +34,15 @@ std::vector<PlacedView> thinned(std::span<const PlacedView> views) {
     return thinned;
 }
 
-double mutual_overlap(const PlacedView& a, const PlacedView& b, const Pose& a_from_b) {
+double mutual_overlap(const SurroundingView& a, const SurroundingView& b, const Pose& a_from_b) {
     return std::min(overlap(*a.view, *b.view, a_from_b),
                     overlap(*b.view, *a.view, a_from_b.inverse(Eigen::Isometry)));
 }
 
-const PlacedView* best_partner(std::span<const PlacedView> older, const PlacedView& b) {
-    const PlacedView* best = nullptr;
+const SurroundingView* best_partner(std::span<const SurroundingView> older, const SurroundingView& b) {
+    const SurroundingView* best = nullptr;
     double most = kMinOverlap;
-    for (const PlacedView& a : older) {
+    for (const SurroundingView& a : older) {
         const Pose a_from_b = a.world_from_camera.inverse(Eigen::Isometry) * b.world_from_camera;
         if (a_from_b.translation().norm() > kFarthest || a_from_b.linear()(2, 2) < 0.7) continue;
         const double shared = mutual_overlap(a, b, a_from_b);
@@ -55,7 +55,8 @@ const PlacedView* best_partner(std::span<const PlacedView> older, const PlacedVi
 
 enum class Likeness { kUnknown, kAlike, kUnlike };
 
-Likeness compare(const PlacedView& a, const PlacedView& b, const places::VerificationOptions& options) {
+Likeness compare(const SurroundingView& a, const SurroundingView& b,
+                 const places::VerificationOptions& options) {
     constexpr int kMinSamples = 20, kMinPoints = 60;
     constexpr double kAlikeShare = 0.08, kUnlikeShare = 0.02;
     const Pose a_from_b = a.world_from_camera.inverse(Eigen::Isometry) * b.world_from_camera;
@@ -72,12 +73,13 @@ Likeness compare(const PlacedView& a, const PlacedView& b, const places::Verific
 
 }  // namespace
 
-Surroundings compare_surroundings(std::span<const PlacedView> older, std::span<const PlacedView> newer,
+Surroundings compare_surroundings(std::span<const SurroundingView> older,
+                                  std::span<const SurroundingView> newer,
                                   const places::VerificationOptions& options) {
-    const std::vector<PlacedView> partners = thinned(older);
+    const std::vector<SurroundingView> partners = thinned(older);
     Surroundings surroundings;
-    for (const PlacedView& view : thinned(newer)) {
-        const PlacedView* partner = best_partner(partners, view);
+    for (const SurroundingView& view : thinned(newer)) {
+        const SurroundingView* partner = best_partner(partners, view);
         if (partner == nullptr) continue;
         const Likeness likeness = compare(*partner, view, options);
         surroundings.alike += likeness == Likeness::kAlike;

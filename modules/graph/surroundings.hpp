@@ -10,7 +10,7 @@
 namespace planemap::graph {
 
 /// A view and where its camera stood, if a loop closure is true.
-struct PlacedView {
+struct SurroundingView {
     const places::KeyframeView* view = nullptr;
     Pose world_from_camera = Pose::Identity();
     double drift_m = 0;  ///< bound of its error with respect to its own end of the loop closure
@@ -26,7 +26,8 @@ struct Surroundings {
 
 /// Compares each of the newer views with the older one that shares most with it. Pairs that drift allows to
 /// be elsewhere, or that show little, count as neither.
-Surroundings compare_surroundings(std::span<const PlacedView> older, std::span<const PlacedView> newer,
+Surroundings compare_surroundings(std::span<const SurroundingView> older,
+                                  std::span<const SurroundingView> newer,
                                   const places::VerificationOptions& options);
 
 }  // namespace planemap::graph

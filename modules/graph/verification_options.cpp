@@ -5,12 +5,9 @@ namespace planemap::graph {
 
 places::VerificationOptions verification_options(const GraphOptions& options) {
     places::VerificationOptions out;
-    out.matching = {options.max_descriptor_distance, options.matching_ratio};
-    out.bearing_sigma = options.bearing_sigma;
+    out.matching.ratio = options.matching_ratio;
     out.min_inliers = options.min_inliers;
     out.min_inlier_ratio = options.min_inlier_ratio;
-    out.min_visible_ratio = options.min_visible_ratio;
-    out.max_contradiction = options.max_contradiction;
     return out;
 }
 

@@ -4,15 +4,14 @@
 #include <cstdint>
 #include <functional>
 #include <lcm/lcm-cpp.hpp>
-#include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "messages/complaints.hpp"
-#include "messages/endpoint.hpp"
+#include "messages/connection.hpp"
 #include "messages/error.hpp"
+#include "messages/wall_clock.hpp"
 
 namespace planemap::messages {
 
@@ -43,17 +42,16 @@ class Bus {
     /// std::invalid_argument that names the prefix and what is allowed: at most channels::kMaxChannelPrefix
     /// letters, digits and characters of _-/.
     explicit Bus(const std::string& url = "", const std::string& channel_prefix = "");
-    ~Bus();
     Bus(const Bus&) = delete;
     Bus& operator=(const Bus&) = delete;
 
     /// The URL after completion.
-    const std::string& url() const { return endpoint_.url(); }
+    const std::string& url() const { return connection_.endpoint().url(); }
     const std::string& channel_prefix() const { return prefix_; }
     /// True for memq://, where nothing may be dropped.
-    bool in_process() const { return endpoint_.in_process(); }
+    bool in_process() const { return connection_.endpoint().in_process(); }
     /// True where what comes was sent just now: not on memq://, nor from a log.
-    bool is_network() const { return endpoint_.is_network(); }
+    bool is_network() const { return connection_.endpoint().is_network(); }
 
     /// Tells what this process sends from what another one sends, or it itself before it started again: drawn
     /// at random, not 0. In one process 0, so that the same input gives the same bytes.
@@ -63,7 +61,7 @@ class Bus {
     void go_on_as(std::int64_t session) { session_ = session; }
 
     /// Sends a message. Throws std::invalid_argument for a channel that is too long for LCM. One that cannot
-    /// be sent (no connection, too large) is counted in unsent().
+    /// be sent (no connection, too large) is counted; trouble() says how many.
     template <typename T>
     void publish(const std::string& channel, const T& message) {
         const int size = message.getEncodedSize();
@@ -81,58 +79,38 @@ class Bus {
 
     /// Waits at most timeout_ms for messages and handles one. Returns false on timeout, a signal, or without
     /// a connection; then it is tried to make one, once a second (a second at most, a signal ends it).
-    bool handle(int timeout_ms);
+    bool handle(int timeout_ms) { return connection_.receive(timeout_ms); }
     /// Handles until nothing waits; for memq://.
     void drain();
 
     /// False while there is no connection.
-    bool connected() const { return lcm_ != nullptr && !broken_; }
+    bool connected() const { return connection_.is_up(); }
     /// True when a file:// URL's log has been read to its end, or to a record that liblcm cannot read.
-    bool ended() const { return ended_; }
-    /// Messages that could not be sent, since the start.
-    std::int64_t unsent() const { return unsent_; }
-    /// What keeps the bus from working, for the status; empty if all is well.
+    bool ended() const { return connection_.ended(); }
+    /// What keeps the bus from working, how many messages could not be sent, and how often one that came
+    /// could not be used, for the status; empty if all is well.
     std::string trouble() const;
 
     /// Counts and logs (by its kind) a message that was dropped; for shells that find out after their handler
     /// returned. Several shells of a process that drop one message for one reason are one complaint.
     void report(std::string_view channel, const char* reason);
-    /// Messages dropped so, and handlers that threw, since the start.
-    std::int64_t handler_errors() const { return handler_errors_; }
     /// What went wrong on this bus, by its kind; shells add theirs.
     Complaints& complaints() { return complaints_; }
     const Complaints& complaints() const { return complaints_; }
 
   private:
-    struct Subscriber;
-    static void dispatch(const lcm::ReceiveBuffer* buffer, const std::string& channel,
-                         Subscriber* subscriber);
+    void dispatch(const Handler& handler, const std::string& channel, const lcm::ReceiveBuffer& buffer);
     std::string full_name(const std::string& channel) const;
-    bool connect();
-    void discard();
-    bool attach(Subscriber& subscriber);
-    void wait_and_reconnect(int timeout_ms);
-    void lose(const std::string& reason);
 
-    Endpoint endpoint_;
     std::string prefix_;
-    std::unique_ptr<lcm::LCM> lcm_;
-    std::vector<std::unique_ptr<Subscriber>> subscribers_;
     std::vector<std::uint8_t> buffer_;
     Complaints complaints_;
     std::int64_t session_ = 0;
-    std::int64_t handler_errors_ = 0, unsent_ = 0;
-    std::int64_t handled_ = 0, reported_ = 0;  ///< messages handled; the one that report() was last called in
+    std::int64_t handler_errors_ = 0;  ///< messages that report() was told of, and handlers that threw
+    std::int64_t reported_ = 0;        ///< the message received when report() was last called
     std::string reported_reason_;
-    bool broken_ = false;  ///< lcm_ is of no use any more; it goes where none of its handlers runs
-    bool ended_ = false;
-    std::string lost_reason_;
-    std::optional<std::int64_t> reassemblies_failed_before_;  ///< multicast only
-    std::int64_t lost_us_ = 0, last_attempt_us_ = 0;
+    Connection connection_;  ///< last: it uses complaints_, and ends before what its handlers use
 };
-
-/// Wall clock, microseconds since the epoch.
-std::int64_t now_us();
 
 /// The line that tells how to raise the kernel's bound if it is below the URL's recv_buf_size; empty if all
 /// is well.

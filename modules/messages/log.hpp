@@ -47,16 +47,9 @@ class LogReader {
 
     std::uint64_t bytes_read() const { return at_; }
     std::uint64_t bytes_total() const { return records_.file().size(); }
-    std::uint64_t bytes_skipped() const { return skipped_; }  ///< that belong to no record
-    /// Those of them at the end that are zeros, and no events: who wrote the log reserved room and did not
-    /// close it.
-    std::uint64_t zeros_at_end() const { return zeros_; }
+    std::uint64_t bytes_skipped() const { return skipped_; }   ///< that belong to no record
     bool truncated() const { return truncated_; }              ///< the last record is cut short
     const std::vector<LogGap>& gaps() const { return gaps_; }  ///< the first kMaxGaps
-    std::int64_t gap_count() const { return gap_count_; }
-    std::int64_t events_lost() const { return events_lost_; }  ///< in all gaps, about
-    /// Good events between two that are consecutive but for this one's number: its header is damaged.
-    std::int64_t misnumbered() const { return misnumbered_; }
 
     /// All that is wrong with what was read so far, a line each, beginning with the file's name; empty if all
     /// is well.
@@ -71,13 +64,16 @@ class LogReader {
     std::int64_t lost_between(std::uint64_t bytes, const LogRecord* next) const;
 
     LogRecords records_;
-    std::uint64_t at_ = 0, skipped_ = 0, zeros_ = 0;
+    std::uint64_t at_ = 0, skipped_ = 0;
+    std::uint64_t zeros_ = 0;  ///< skipped at the end: who wrote the log reserved room and did not close it
     std::optional<std::uint64_t> gap_;         ///< where the one that at_ is in began
     std::optional<LogRecord> before_, ahead_;  ///< the last good record; the one that resume() found
     std::uint64_t ahead_from_ = 0;             ///< where the search for it began
     bool nothing_ahead_ = false, truncated_ = false;
     std::vector<LogGap> gaps_;
-    std::int64_t gap_count_ = 0, events_lost_ = 0, events_ = 0, misnumbered_ = 0;
+    std::int64_t gap_count_ = 0, events_ = 0;
+    std::int64_t events_lost_ = 0;  ///< in all gaps, about
+    std::int64_t misnumbered_ = 0;  ///< between two that are consecutive but for this one's damaged number
     std::optional<std::int64_t> first_utime_, expected_;  ///< expected_: where a number was out of sequence
 };
 

@@ -70,20 +70,7 @@ void ModuleStatus::lost(const std::string& what, std::int64_t count) {
 }
 
 void ModuleStatus::remark(const std::string& kind, const std::string& text) {
-    Remark& remark = remarks_[kind];
-    remark.text = text;
-    if (text.empty()) return;
-    ++remark.times;
-    std::int64_t power = 1;
-    while (power < remark.times) power *= 10;
-    if (power == remark.times) spdlog::warn("{}: {}", module_, text);
-}
-
-std::vector<std::string> ModuleStatus::remarks() const {
-    std::vector<std::string> out;
-    for (const auto& [kind, remark] : remarks_)
-        if (!remark.text.empty()) out.push_back(remark.text);
-    return out;
+    if (remarks_.set(kind, text)) spdlog::warn("{}: {}", module_, text);
 }
 
 /// The text with what was lost, and what ails the bus, behind it.

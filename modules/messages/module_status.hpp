@@ -10,6 +10,7 @@
 
 #include "core/histogram.hpp"
 #include "messages/bus.hpp"
+#include "messages/remarks.hpp"
 #include "messages/seq_counter.hpp"
 #include "messages/spent.hpp"
 
@@ -74,16 +75,13 @@ class ModuleStatus {
 
     const std::string& module() const { return module_; }
     /// The remarks as they are shown.
-    std::vector<std::string> remarks() const;
-    std::int64_t dropped_count() const { return dropped_; }
+    std::vector<std::string> remarks() const { return remarks_.texts(); }
     std::int64_t decode_error_count() const { return decode_errors_; }
     /// What was lost since the start, by its reason.
     const std::map<std::string, std::int64_t>& losses() const { return losses_; }
     /// Milliseconds of work for each input since the start.
     const Histogram& work_ms() const { return work_ms_; }
     /// The same in CPU time of the thread that worked: what a busy machine does not lengthen.
-    /// Milliseconds from frames' utime to what was published of them, since the start; see published().
-    const Histogram& age_ms() const { return age_ms_; }
     const Histogram& work_cpu_ms() const { return work_cpu_ms_; }
 
     /// Why the module gave nothing, though it was given something: none of its inputs could be used. Empty
@@ -99,11 +97,6 @@ class ModuleStatus {
     std::string line() const;
 
   private:
-    struct Remark {
-        std::string text;
-        std::int64_t times = 0;
-    };
-
     module_status_t message(std::int64_t now_us, bool stopped) const;
     std::int8_t state(std::int64_t now_us) const;
     std::string full_text() const;
@@ -111,10 +104,11 @@ class ModuleStatus {
     std::string module_, channel_, text_, failing_, bus_trouble_;
     std::int64_t came_ = 0, received_ = 0, published_ = 0, dropped_ = 0, decode_errors_ = 0;
     std::map<std::string, std::int64_t> losses_;
-    std::map<std::string, Remark> remarks_;  ///< by kind
-    bool is_connected_ = true;               ///< the bus, at the last status
+    Remarks remarks_;
+    bool is_connected_ = true;  ///< the bus, at the last status
     SeqCounter seqs_;
-    Histogram work_ms_, work_cpu_ms_, window_ms_, age_ms_, window_age_ms_;
+    Histogram work_ms_, work_cpu_ms_, window_ms_;
+    Histogram age_ms_, window_age_ms_;  ///< from a frame's utime to what was published of it
     // Since the last status.
     std::int64_t window_start_us_ = 0, window_received_ = 0, window_published_ = 0, window_unusable_ = 0;
     std::int64_t unanswered_since_us_ = 0;  ///< inputs came since then, and nothing left; 0: none

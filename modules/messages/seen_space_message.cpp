@@ -12,7 +12,8 @@ namespace planemap::messages {
 
 namespace {
 
-constexpr std::size_t kVoxelBytes = SeenSpace::kSide * SeenSpace::kSide, kBlockBytes = 3 * 2 + kVoxelBytes;
+constexpr std::size_t kVoxelBytes = std::size_t{SeenSpace::kSide} * SeenSpace::kSide,
+                      kBlockBytes = 3 * 2 + kVoxelBytes;
 
 /// Where a block's coordinates and voxels are in the bytes that are zipped.
 std::size_t coordinate_at(std::size_t block, std::size_t axis, std::size_t blocks) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "core/stamp.hpp"
+#include "core/time_step.hpp"
 #include "messages/session.hpp"
 
 namespace planemap::messages {
@@ -73,9 +74,7 @@ std::int64_t SenderGuard::step_us() const {
     const std::size_t n = std::min(n_steps_, steps_us_.size());
     if (n == 0) return 0;
     auto steps = steps_us_;
-    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(n / 2);
-    std::nth_element(steps.begin(), middle, steps.begin() + static_cast<std::ptrdiff_t>(n));
-    return std::min(*middle, kLongestStep_us);
+    return std::min(median_step(std::span(steps).first(n)), kLongestStep_us);
 }
 
 /// Whether a message can be of the stream: no further from its last one than pauses, losses and a network's

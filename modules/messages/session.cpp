@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "messages/session.hpp"
 
-#include <fcntl.h>
-#include <unistd.h>
-
-#include <cerrno>
 #include <charconv>
 #include <cstdio>
 #include <cstring>
@@ -13,6 +9,7 @@
 #include <system_error>
 
 #include "core/files.hpp"
+#include "core/sync_folder.hpp"
 
 namespace planemap::messages {
 
@@ -33,16 +30,6 @@ std::uint64_t read_session(const std::filesystem::path& file) {
         throw std::runtime_error(file.string() +
                                  ": is no session of 16 hexadecimal digits; remove it to start anew");
     return session;
-}
-
-/// A name that a power cut may take back would give the same number to two processes.
-void sync_folder(const std::filesystem::path& folder) {
-    const int handle = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    const bool failed = handle < 0 || ::fsync(handle) != 0;
-    const int error = errno;
-    if (handle >= 0) ::close(handle);
-    if (failed && error != EINVAL)
-        throw std::runtime_error(folder.string() + ": cannot be synced: " + std::strerror(error));
 }
 
 }  // namespace
@@ -78,7 +65,9 @@ std::int64_t session_with_state(const std::filesystem::path& folder, const std::
     char text[24];
     std::snprintf(text, sizeof(text), "%016llx\n", static_cast<unsigned long long>(now));
     write_file(file, text);
-    sync_folder(folder);
+    // A name that a power cut may take back would give the same number to two processes.
+    if (const int failed = sync_folder(folder); failed != 0)
+        throw std::runtime_error(folder.string() + ": cannot be synced: " + std::strerror(failed));
     return now;
 }
 

@@ -20,21 +20,9 @@ OctomapBuilder::OctomapBuilder(OctomapOptions options)
       tracer_(options_),
       tree_(std::make_unique<::octomap::OcTree>(options_.resolution_m)) {}
 
-bool OctomapBuilder::add(int keyframe_id, const DepthImage& depth, const CameraInfo& camera,
-                         const Pose& world_from_camera) {
-    return add_look(keyframe_id, depth, camera, world_from_camera, {keyframe_id, Pose::Identity()});
-}
-
-bool OctomapBuilder::add_look(ScanId id, const DepthImage& depth, const CameraInfo& camera,
-                              const Pose& world_from_camera, const ScanAnchor& anchor) {
-    camera.validate();
-    if (depth.width != camera.depth.width || depth.height != camera.depth.height) return false;
-    return add_look(id, std::make_shared<StoredScan>(depth, camera), world_from_camera, anchor);
-}
-
-bool OctomapBuilder::add_look(ScanId id, std::shared_ptr<const StoredScan> scan,
-                              const Pose& world_from_camera, const ScanAnchor& anchor) {
-    if (!keep_look(id, std::move(scan), world_from_camera, anchor)) return false;
+bool OctomapBuilder::add(ScanId id, std::shared_ptr<const StoredScan> scan, const Pose& world_from_camera,
+                         const ScanAnchor& anchor) {
+    if (!keep(id, std::move(scan), world_from_camera, anchor)) return false;
     if (!rebuild_due()) {
         while (insert_next({})) continue;
     }
@@ -42,13 +30,8 @@ bool OctomapBuilder::add_look(ScanId id, std::shared_ptr<const StoredScan> scan,
     return true;
 }
 
-bool OctomapBuilder::keep(int keyframe_id, std::shared_ptr<const StoredScan> scan,
-                          const Pose& world_from_camera) {
-    return keep_look(keyframe_id, std::move(scan), world_from_camera, {keyframe_id, Pose::Identity()});
-}
-
-bool OctomapBuilder::keep_look(ScanId id, std::shared_ptr<const StoredScan> scan,
-                               const Pose& world_from_camera, const ScanAnchor& anchor) {
+bool OctomapBuilder::keep(ScanId id, std::shared_ptr<const StoredScan> scan, const Pose& world_from_camera,
+                          const ScanAnchor& anchor) {
     return keyframes_.keep(id, std::move(scan), world_from_camera, anchor);
 }
 
@@ -99,7 +82,6 @@ void OctomapBuilder::insert(ScanId id, const KeptKeyframe& keyframe, const std::
 
 /// All that is kept, each where it is, as a rebuild of all blocks. Precondition: nothing is frozen.
 void OctomapBuilder::regrow() {
-    reinserted_ += keyframes_.inside();
     rebuild_.reset();
     dirty_ = {};
     tree_ = std::make_unique<::octomap::OcTree>(options_.resolution_m);
@@ -132,7 +114,6 @@ void OctomapBuilder::end_rebuild() {
             mark_dirty(planned.blocks);
         }
     }
-    reinserted_ += rebuild_->reinserted();
     rebuild_.reset();
     stale_ = true;
     ++rebuilds_;

@@ -11,8 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "core/camera.hpp"
-#include "core/image.hpp"
 #include "core/keyframe.hpp"
 #include "octomap/kept_keyframes.hpp"
 #include "octomap/keyframe_tracer.hpp"
@@ -40,13 +38,17 @@ class OctomapBuilder {
     /// Throws std::invalid_argument for bad options.
     explicit OctomapBuilder(OctomapOptions options = {});
 
-    /// Takes a keyframe's depth image as it came from the depth camera (not registered: the pose of the depth
-    /// camera is world_from_camera * camera.color_from_depth). Readings outside the camera's depth range are
-    /// left out. A known id replaces the earlier one. Unless a rebuild is due, it is in the tree at once.
-    /// Returns false, and takes nothing, for an invalid pose, an image whose size is not camera.depth's, or
-    /// an id that is not above all frozen ones. Throws std::invalid_argument for an invalid camera.
-    bool add(int keyframe_id, const DepthImage& depth, const CameraInfo& camera,
-             const Pose& world_from_camera);
+    /// Takes what is kept of a depth image, a keyframe's or a look's, as it came from the depth camera (not
+    /// registered: the pose of the depth camera is world_from_camera * camera.color_from_depth). Readings
+    /// outside the camera's depth range are left out. A known id replaces the earlier one. Unless a rebuild
+    /// is due, it is in the tree at once. Returns false, and takes nothing, for an invalid pose, or an id
+    /// that is not above all frozen ones.
+    ///
+    /// It moves with the keyframe of its anchor: a keyframe's own with itself, a look's with the keyframe
+    /// that it was tracked against. Of the looks of one number, the last counts; they come into the tree
+    /// after their keyframe.
+    bool add(ScanId id, std::shared_ptr<const StoredScan> scan, const Pose& world_from_camera,
+             const ScanAnchor& anchor);
 
     /// Takes new poses. Returns true when a rebuild is due, because keyframes moved; flush() carries it out,
     /// so that many corrections cost one rebuild. One that the last trajectory named and this one does not
@@ -57,18 +59,9 @@ class OctomapBuilder {
     /// Rebuilds if it is due, and brings inner nodes up to date and prunes.
     void flush();
 
-    /// The same for a look: its depth moves with the keyframe that it was tracked against. Of the looks of
-    /// one number, the last counts; they come into the tree after their keyframe.
-    bool add_look(ScanId id, const DepthImage& depth, const CameraInfo& camera, const Pose& world_from_camera,
-                  const ScanAnchor& anchor);
-    /// The same of what is kept of a depth image.
-    bool add_look(ScanId id, std::shared_ptr<const StoredScan> scan, const Pose& world_from_camera,
-                  const ScanAnchor& anchor);
-
     /// add() without touching the tree: advance() will.
-    bool keep(int keyframe_id, std::shared_ptr<const StoredScan> scan, const Pose& world_from_camera);
-    bool keep_look(ScanId id, std::shared_ptr<const StoredScan> scan, const Pose& world_from_camera,
-                   const ScanAnchor& anchor);
+    bool keep(ScanId id, std::shared_ptr<const StoredScan> scan, const Pose& world_from_camera,
+              const ScanAnchor& anchor);
     /// Does one piece of what is due, about the work of one scan: freezes what is too much, inserts a new
     /// keyframe, or, if `may_rebuild`, goes on with the rebuild. Returns false when there was nothing to do.
     /// After a stop was requested the tree is not whole: the builder can only be destroyed.
@@ -88,20 +81,10 @@ class OctomapBuilder {
     OctomapSizes sizes() const { return sizes_of(*tree_); }
     /// The bytes of a .bt file: maximum likelihood, pruned.
     std::string bt() const { return bt_of(*tree_); }
-    /// The same with the occupied space only.
-    std::string bt_occupied() const { return bt_occupied_of(*tree_); }
-    /// The bytes of an .ot file.
-    std::string ot() const { return ot_of(*tree_); }
     /// Centres of all occupied cells of the smallest leaf's size, world frame, metres.
     std::vector<Eigen::Vector3d> occupied_voxels() const { return occupied_voxels_of(*tree_); }
 
-    /// Points of a voxel cloud: number of voxels of the given edge that hold at least one point of the kept
-    /// depth images at their newest poses.
-    std::size_t voxel_cloud_size(double voxel_m) const {
-        return keyframes_.voxel_cloud(voxel_m, options_.subsample).size();
-    }
-
-    /// The voxels of that cloud.
+    /// Voxels of the given edge that hold at least one point of the kept depth images at their newest poses.
     VoxelSet voxel_cloud(double voxel_m) const { return keyframes_.voxel_cloud(voxel_m, options_.subsample); }
     /// The tree that this one would be at another resolution, brought up to date: all kept depth images, each
     /// where it is in the tree's keyframes now. Null when there are frozen ones, whose depth is no longer
@@ -117,8 +100,6 @@ class OctomapBuilder {
     std::size_t frozen() const { return frozen_; }
     /// How often the tree was rebuilt.
     std::size_t rebuilds() const { return rebuilds_; }
-    /// Scans that rebuilds inserted again: what they cost.
-    std::size_t reinserted() const { return reinserted_ + (rebuild_ ? rebuild_->reinserted() : 0); }
 
     /// Hears of each scan that enters the tree, in order of time, before and after it does. One that is not
     /// above the last begins the growth anew.
@@ -151,7 +132,6 @@ class OctomapBuilder {
     GrowthListener listener_;
     bool stale_ = false;  ///< inner nodes are not up to date
     std::size_t frozen_ = 0, rebuilds_ = 0;
-    std::size_t reinserted_ = 0;  ///< by the rebuilds that ended
 };
 
 }  // namespace planemap::octomap

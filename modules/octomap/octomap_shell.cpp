@@ -8,7 +8,6 @@
 #include <planemap/look_t.hpp>
 #include <planemap/map_size_t.hpp>
 #include <planemap/trajectory_t.hpp>
-#include <thread>
 #include <utility>
 
 #include "core/components.hpp"
@@ -24,24 +23,17 @@ namespace {
 constexpr std::int64_t kPublishPeriodUs = 5000000;
 constexpr std::chrono::milliseconds kPatience{250};  // of a stop
 
-// Keyframes without a pose: as many as the graph's own queue holds.
-constexpr std::size_t kMaxWaiting = 256;
-// Keyframes that the graph let go, which looks may still be tracked against.
-constexpr int kReplacedKept = 1000;
-
 }  // namespace
 
 OctomapShell::OctomapShell(messages::Bus& bus, std::shared_ptr<messages::FrameDecoder> decoder,
                            const OctomapOptions& options, Building building, const OctomapFiles& files)
     : bus_(bus),
       decoder_(std::move(decoder)),
-      options_(options),
-      builder_(std::make_unique<OctomapBuilder>(options)),
+      tree_(options, building),
       recent_(building == Building::kInBackground ? RecentFrames::kInBackground : RecentFrames::kInHandler),
       resolution_m_(options.resolution_m),
       max_keyframes_(static_cast<std::size_t>(options.max_keyframes)),
       output_(files.output) {
-    if (building == Building::kInBackground) worker_ = std::make_unique<OctomapWorker>(*builder_);
     if (!files.journal.empty()) {
         journal_ = std::make_unique<ScanJournal>(bus, files.journal);
         resume();
@@ -56,14 +48,6 @@ OctomapShell::OctomapShell(messages::Bus& bus, std::shared_ptr<messages::FrameDe
                    status_.guard([this](const messages::RawMessage& m) { on_trajectory(m); }), 16);
 }
 
-OctomapShell::~OctomapShell() {
-    if (!worker_) return;
-    worker_.reset();
-    // To free millions of nodes one by one takes longer than a stop may: the end of the process does not wait
-    // for it.
-    std::thread([left = std::move(builder_)] {}).detach();
-}
-
 void OctomapShell::drop(const char* reason, std::int64_t count) {
     status_.dropped(count);
     status_.lost(reason, count);
@@ -71,22 +55,14 @@ void OctomapShell::drop(const char* reason, std::int64_t count) {
 
 void OctomapShell::on_keyframe(const messages::RawMessage& message) {
     const keyframe_t received = messages::decode<keyframe_t>(message.bytes);
-    // Odometry sends the last ones again when a module was started again.
-    if (received.session != 0 && received.session == keyframes_of_ && watch_.has(received.id))
-        return status_.count_loss("keyframes that came twice");
-    if (!keyframe_guard_.admits(received.session, received.seq, received.utime, message.bytes)) return;
-    keyframes_of_ = received.session;
+    if (!keyframe_guard_.admits(received, message.bytes, watch_.has(received.id))) return;
+    keyframe_guard_.took(received);
     watch_.came(received.id, received.previous_id, received.utime);
-    if (received.id > newest_id_) looks_since_ = 0;
-    newest_id_ = std::max(newest_id_, received.id);
+    waiting_.announce(received.id);
     const std::shared_ptr<const messages::Frame> frame = recent_.at(received.utime);
     if (!frame) return drop("keyframes whose frame was gone");
     if (journal_) journal_->keep(*frame, message.bytes);
-    waiting_[received.id] = scan_of(*frame);
-    if (waiting_.size() > kMaxWaiting) {
-        waiting_.erase(waiting_.begin());
-        drop("keyframes that never got a pose");
-    }
+    if (!waiting_.add_keyframe(received.id, scan_of(*frame))) drop("keyframes that never got a pose");
 }
 
 std::shared_ptr<const StoredScan> OctomapShell::scan_of(const messages::Frame& frame) {
@@ -98,27 +74,11 @@ std::shared_ptr<const StoredScan> OctomapShell::scan_of(const messages::Frame& f
 void OctomapShell::on_look(const messages::RawMessage& message) {
     const look_t received = messages::decode<look_t>(message.bytes);
     const Look look = messages::from_message(received);
-    if (look.number == 0 || received.session != keyframes_of_) return;
+    if (look.number == 0 || received.session != keyframe_guard_.session()) return;
     const std::shared_ptr<const messages::Frame> frame = recent_.at(look.utime);
     if (!frame) return drop("looks whose frame was gone");
-    looks_.push_back(
-        {{newest_id_, ++looks_since_}, {look.keyframe_id, look.keyframe_from_camera}, scan_of(*frame)});
-    if (looks_.size() > kMaxWaiting) {
-        looks_.pop_front();
-        drop("looks whose keyframe never got a pose");
-    }
-    add_looks();
-}
-
-/// Those whose keyframe has a pose; in their order.
-void OctomapShell::add_looks() {
-    while (!looks_.empty()) {
-        const WaitingLook& look = looks_.front();
-        const std::optional<Pose> anchor = poses_.pose_of(look.anchor.keyframe_id);
-        if (!anchor || waiting_.contains(look.id.keyframe)) return;
-        add(look.id, look.scan, *anchor * look.anchor.keyframe_from_camera, look.anchor);
-        looks_.pop_front();
-    }
+    if (!waiting_.add_look(look, scan_of(*frame))) drop("looks whose keyframe never got a pose");
+    waiting_.give_looks(adder());
 }
 
 void OctomapShell::on_trajectory(const messages::RawMessage& message) {
@@ -142,120 +102,91 @@ void OctomapShell::take(const KeyframeTrajectory& all) {
     watch_.named(all, messages::now_us());
     named_.clear();
     for (const KeyframePose& pose : all.keyframes) named_.insert(pose.id);
-    poses_.update(trajectory.keyframes);
-    poses_.keep_replaced([&](int id) { return id > newest_id_ - kReplacedKept; });
-    last_utime_ = trajectory.utime;
-    last_revision_ = trajectory.revision;
-    if (!worker_) builder_->update(trajectory);
-    for (const KeyframePose& pose : trajectory.keyframes) {
-        const auto waiting = waiting_.find(pose.id);
-        if (waiting == waiting_.end()) continue;
-        const std::shared_ptr<const StoredScan> scan = waiting->second;
-        waiting_.erase(waiting);
-        add(pose.id, scan, pose.world_from_camera, {pose.id, Pose::Identity()});
-    }
-    add_looks();
-    if (worker_) worker_->update(trajectory);
+    tree_.begin_update(trajectory);
+    waiting_.give_keyframes(trajectory, adder());
+    waiting_.give_looks(adder());
+    tree_.end_update(trajectory);
     unpublished_ = true;
 }
 
 /// Another component has become the largest: what the tree holds lies nowhere in it.
 void OctomapShell::start_over() {
-    const bool is_in_background = worker_ != nullptr;
-    worker_.reset();
     drop("keyframes of a component that is the largest no more",
-         static_cast<std::int64_t>(builder_->keyframes_in_tree() + builder_->waiting()));
-    builder_ = std::make_unique<OctomapBuilder>(options_);
-    if (is_in_background) worker_ = std::make_unique<OctomapWorker>(*builder_);
-    poses_ = {};
-    looks_.clear();
+         static_cast<std::int64_t>(tree_.start_over()));
+    waiting_.start_over();
     frozen_ = refused_ = 0;
 }
 
 /// Takes keyframes, their depth and their poses from the process before.
 void OctomapShell::resume() {
     ScanJournal::Earlier earlier = journal_->earlier();
-    waiting_ = std::move(earlier.scans);
+    waiting_.resume(std::move(earlier.scans));
     for (const ScanJournal::Came& keyframe : earlier.keyframes)
         watch_.came(keyframe.id, keyframe.previous_id, keyframe.utime);
     if (!earlier.newest.empty()) {
         const auto last = messages::decode<keyframe_t>(earlier.newest);
-        keyframe_guard_.resume(last.session, last.seq, last.utime, earlier.newest);
-        keyframes_of_ = last.session;
+        keyframe_guard_.resume(last, earlier.newest);
     }
     if (earlier.trajectory.empty()) return;
     const auto last = messages::decode<trajectory_t>(earlier.trajectory);
     trajectory_guard_.resume(last.session, last.seq, std::nullopt, earlier.trajectory);
-    spdlog::info("octomap: goes on with {} keyframes of {}", waiting_.size(), journal_->file().string());
+    spdlog::info("octomap: goes on with {} keyframes of {}", waiting_.keyframes(), journal_->file().string());
     take(messages::from_message(last));
 }
 
 /// octomap.bt, as planemap-run leaves it, beside the map.
 void OctomapShell::write_tree() {
-    if (output_.empty() || builder_->keyframes_in_tree() == 0) return;
+    if (output_.empty() || tree_.builder().keyframes_in_tree() == 0) return;
     std::filesystem::create_directories(output_);
-    write_file(output_ / "octomap.bt", builder_->bt());
+    write_file(output_ / "octomap.bt", tree_.builder().bt());
 }
 
 void OctomapShell::add(ScanId id, const std::shared_ptr<const StoredScan>& scan,
                        const Pose& world_from_camera, const ScanAnchor& anchor) {
-    if (worker_) {
-        if (!worker_->add(id, scan, world_from_camera, anchor))
-            return drop("keyframes that the OctoMap was too slow for");
-        return status_.published();
-    }
-    const messages::ModuleStatus::Work work(status_);
-    if (builder_->add_look(id, scan, world_from_camera, anchor)) {
-        status_.published();
-    } else {
-        drop("keyframes that the OctoMap refused");
-    }
+    std::optional<messages::ModuleStatus::Work> work;
+    if (!tree_.is_in_background()) work.emplace(status_);
+    if (tree_.add(id, scan, world_from_camera, anchor)) return status_.published();
+    drop(tree_.is_in_background() ? "keyframes that the OctoMap was too slow for"
+                                  : "keyframes that the OctoMap refused");
 }
 
 int OctomapShell::poll() {
     constexpr int kIdleMs = 100;
     watch_.tell(messages::now_us());
     if (journal_) journal_->tend(named_, max_keyframes_, status_);
-    if (worker_) {
-        if (const auto state = worker_->newer_state()) publish(*state);
+    if (tree_.is_in_background()) {
+        if (const auto state = tree_.newer_state()) publish(*state);
     } else if (unpublished_ && messages::now_us() - last_publish_us_ >= kPublishPeriodUs) {
-        publish(state());
+        bring_up_to_date_and_publish();
     }
     return kIdleMs;
 }
 
 void OctomapShell::finish() {
-    const auto others = std::count_if(waiting_.begin(), waiting_.end(),
-                                      [&](const auto& waiting) { return named_.contains(waiting.first); });
-    drop("keyframes of components other than the largest", others);
-    drop("keyframes that never got a pose", static_cast<std::int64_t>(waiting_.size()) - others);
-    waiting_.clear();
+    const std::size_t others = waiting_.keyframes_among(named_);
+    drop("keyframes of components other than the largest", static_cast<std::int64_t>(others));
+    drop("keyframes that never got a pose", static_cast<std::int64_t>(waiting_.keyframes() - others));
+    waiting_.clear_keyframes();
     if (journal_) journal_->save_trajectory();
-    if (!worker_) {
-        publish(state());
+    if (!tree_.is_in_background()) {
+        bring_up_to_date_and_publish();
         return write_tree();
     }
-    worker_->finish(kPatience);
-    const auto state = worker_->newer_state();
+    tree_.finish(kPatience);
+    const auto state = tree_.newer_state();
     if (state) publish(*state);
     write_tree();
     if (!state || !state->is_up_to_date)
         spdlog::warn("octomap: stopped while some keyframes were not where the last trajectory has them");
 }
 
-OctomapState OctomapShell::state() {
+void OctomapShell::bring_up_to_date_and_publish() {
+    OctomapState state;
     {
         const messages::ModuleStatus::Work work(status_);
-        builder_->flush();
+        state = tree_.state_up_to_date();
     }
-    OctomapState state;
-    state.sizes = builder_->sizes();
-    state.keyframes = builder_->keyframes_in_tree();
-    state.frozen = builder_->frozen();
-    state.utime = last_utime_;
-    state.revision = last_revision_;
-    state.is_up_to_date = true;
-    return state;
+    publish(state);
 }
 
 void OctomapShell::publish(const OctomapState& state) {

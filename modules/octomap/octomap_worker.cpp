@@ -92,7 +92,7 @@ void OctomapWorker::take_in() {
         waiting_ = builder_.waiting() + given.size();
     }
     for (Given& g : given) {
-        if (!builder_.keep_look(g.id, std::move(g.scan), g.world_from_camera, g.anchor)) ++now_.refused;
+        if (!builder_.keep(g.id, std::move(g.scan), g.world_from_camera, g.anchor)) ++now_.refused;
     }
     if (trajectory) {
         builder_.update(*trajectory);

@@ -73,6 +73,10 @@ std::vector<cv::Point2f> best_of_cells(std::vector<cv::KeyPoint> corners, const 
 
 }  // namespace
 
+CornerOptions corner_options(const OdometryOptions& options) {
+    return {options.max_points, options.cell_px, options.corner_threshold, options.max_depth_spread};
+}
+
 std::vector<cv::Point2f> select_corners(const GrayImage& gray, const DepthImage& depth,
                                         const CameraInfo& info, const CornerOptions& options) {
     std::vector<cv::KeyPoint> corners;

@@ -9,6 +9,7 @@
 #include "core/camera.hpp"
 #include "core/image.hpp"
 #include "core/keyframe.hpp"
+#include "odometry/options.hpp"
 
 namespace planemap::odometry {
 
@@ -22,11 +23,14 @@ double sound_depth(const DepthImage& depth, const CameraInfo& info, const Eigen:
                    double max_spread);
 
 struct CornerOptions {
-    int max_corners = 300;
-    int cell_px = 20;                ///< at most one corner in each square of this side
-    int threshold = 20;              ///< FAST
-    double max_depth_spread = 0.04;  ///< see sound_depth()
+    int max_corners;
+    int cell_px;              ///< at most one corner in each square of this side
+    int threshold;            ///< FAST
+    double max_depth_spread;  ///< see sound_depth()
 };
+
+/// What odometry's options say of them.
+CornerOptions corner_options(const OdometryOptions& options);
 
 /// The strongest FAST corner with sound depth of each cell, strongest cells first, at most max_corners.
 std::vector<cv::Point2f> select_corners(const GrayImage& gray, const DepthImage& depth,

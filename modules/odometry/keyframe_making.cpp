@@ -68,8 +68,7 @@ LocalKeyframe make_local_keyframe(const OdometryOptions& options, const Prepared
     keyframe.patches.lay_on(frame.regions, frame.camera->noise);
     if (!frame.gray) return keyframe;
     const Pose depth_from_color_time = pose_from_twist(-motion.color_offset_s * motion.velocity);
-    const CornerOptions corners{options.max_points, options.cell_px, options.corner_threshold,
-                                options.max_depth_spread};
+    const CornerOptions corners = corner_options(options);
     for (const cv::Point2f& pixel : select_corners(*frame.gray, *frame.depth, *frame.camera, corners))
         if (const auto point = make_point(options, frame, pixel, depth_from_color_time, motion.velocity))
             keyframe.points.push_back(*point);

@@ -12,7 +12,7 @@
 namespace planemap::odometry {
 
 /// What a frame is located by. There is a current keyframe.
-struct Surroundings {
+struct References {
     const CameraMotion& motion;
     const LocalKeyframes& keyframes;
     const Relocaliser& relocaliser;
@@ -25,7 +25,7 @@ class Method {
     virtual ~Method() = default;
 
     /// Where a frame is; nothing when it is lost.
-    virtual std::optional<Located> locate(const PreparedFrame& frame, const Surroundings& known) = 0;
+    virtual std::optional<Located> locate(const PreparedFrame& frame, const References& known) = 0;
     /// Whether a keyframe is wanted although the camera is still near the one that the frame was located
     /// against. After follow().
     virtual bool wants_keyframe(const PreparedFrame& frame, const Located& located,

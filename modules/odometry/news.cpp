@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <vector>
 
+#include "core/time_step.hpp"
+
 namespace planemap::odometry {
 namespace {
 
@@ -84,9 +86,8 @@ bool NewsWatch::is_late(const OdometryFrame& frame) const {
     std::int64_t most_us = kMostBeside_us;
     if (!steps_us_.empty()) {
         std::vector<std::int64_t> steps(steps_us_.begin(), steps_us_.end());
-        const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-        std::nth_element(steps.begin(), middle, steps.end());
-        most_us = std::min(most_us, static_cast<std::int64_t>(kMostPeriods * static_cast<double>(*middle)));
+        most_us = std::min(most_us,
+                           static_cast<std::int64_t>(kMostPeriods * static_cast<double>(median_step(steps))));
     }
     return std::abs(frame.color_utime - frame.utime) > most_us;
 }

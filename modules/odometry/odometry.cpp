@@ -1,36 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "odometry/odometry.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <utility>
 
 #include "odometry/camera_motion.hpp"
 #include "odometry/chains.hpp"
+#include "odometry/estimates.hpp"
+#include "odometry/image_filter.hpp"
 #include "odometry/keyframe_choice.hpp"
 #include "odometry/keyframe_making.hpp"
 #include "odometry/local_keyframes.hpp"
 #include "odometry/method.hpp"
 #include "odometry/motion_priors.hpp"
-#include "odometry/news.hpp"
 #include "odometry/prepared_frame.hpp"
 #include "odometry/readout.hpp"
 #include "odometry/relocaliser.hpp"
+#include "odometry/waiting_keyframe.hpp"
 
 namespace planemap::odometry {
-namespace {
-
-/// Whether three standard deviations in any direction are less than 10 cm and 5 degrees.
-bool says_where(const Matrix6d& covariance) {
-    constexpr double kFar_m = 0.1, kFar_rad = 0.0873, kSigmas = 3;
-    const auto worst = [](const Eigen::Matrix3d& block) {
-        return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(block, Eigen::EigenvaluesOnly).eigenvalues()(2);
-    };
-    return kSigmas * kSigmas * worst(covariance.topLeftCorner<3, 3>()) < kFar_m * kFar_m &&
-           kSigmas * kSigmas * worst(covariance.bottomRightCorner<3, 3>()) < kFar_rad * kFar_rad;
-}
-
-}  // namespace
 
 class Odometry::State {
   public:
@@ -39,6 +27,7 @@ class Odometry::State {
           motion_(options),
           keyframes_(options.local_keyframes),
           relocaliser_(options),
+          waiting_(options_, relocaliser_),
           priors_(options.motion),
           method_(make_method(options)) {}
 
@@ -49,12 +38,10 @@ class Odometry::State {
     bool hear(const MotionPrior& prior) { return priors_.hear(prior); }
 
   private:
-    /// Frames without new colour after which it is no longer waited for.
-    static constexpr int kPatience = 15;
-    /// A frame without its colour has no points to follow: the next one would be tracked by depth alone.
-    bool may_become_keyframe() const { return old_colors_ == 0 || old_colors_ > kPatience; }
     OdometryResult track(const OdometryFrame& input, const News& news);
-    OdometryEstimate stay(std::int64_t utime) const;
+    OdometryEstimate stay(std::int64_t utime) const {
+        return estimates_.stale(motion_, utime, keyframes_.current().odom_from_keyframe);
+    }
     PriorUse take_prior(const PreparedFrame& frame, Located& located);
     OdometryResult find_again(PreparedFrame& frame);
     OdometryResult restart(PreparedFrame& frame);
@@ -64,11 +51,6 @@ class Odometry::State {
     void change_keyframe(PreparedFrame& frame, const Located& located);
     Keyframe& add_keyframe(PreparedFrame& frame, LocalKeyframe local, const Located* located,
                            const FrameMotion& motion);
-    void describe_waiting();
-    Keyframe described_at_once();
-    OdometryEstimate estimate_at(const Keyframe& keyframe) const;
-    Matrix6d measured_covariance(const Located& located, const Guess& predicted) const;
-    Matrix6d covariance_of_moment(const Located& located) const;
 
     OdometryOptions options_;
     CameraInfo camera_;
@@ -80,58 +62,29 @@ class Odometry::State {
     CameraMotion motion_;
     LocalKeyframes keyframes_;
     Relocaliser relocaliser_;
-    std::unique_ptr<UndescribedKeyframe> waiting_;  ///< the frame before's, to be described in this one
-    std::optional<Keyframe> described_;             ///< and not given to the caller yet
+    WaitingKeyframe waiting_;  ///< of the frame before, to be described in this one
     MotionPriors priors_;
     std::unique_ptr<Method> method_;
-    NewsWatch watch_;
-    DepthImage no_depth_;                        ///< without a reading, of the colour camera's size
-    int old_colors_ = 0;                         ///< frames in a row whose colour was not new
-    OdometryEstimate last_;                      ///< of the last frame that was not stale
-    Matrix6d last_measured_ = Matrix6d::Zero();  ///< its covariance without what its moment adds
-    int unseen_steps_ = 0;  ///< frames in a row that knew a direction by the prediction alone
+    ImageFilter images_;
+    Estimates estimates_;
 };
 
 OdometryResult Odometry::State::process(const OdometryFrame& input) {
     check(input);
-    describe_waiting();
-    const News news = watch_.see(input);
+    waiting_.describe();
+    const News news = images_.see(input);
     OdometryResult result;
     if (news.any() || keyframes_.empty()) {
-        OdometryFrame told = input;
-        if (news.color != News::Image::kNew) told.gray = nullptr;
-        old_colors_ = input.gray != nullptr && told.gray == nullptr ? old_colors_ + 1 : 0;
-        if (news.depth != News::Image::kNew) {
-            no_depth_ = DepthImage(input.depth->width, input.depth->height);
-            told.depth = &no_depth_;
-            told.regions = {};
-        }
-        result = track(told, news);
-        if (result.estimate.status != TrackingStatus::kStale) last_ = result.estimate;
+        result = track(images_.only_new(input, news), news);
+        estimates_.said(result.estimate);
     } else {
         result.estimate = stay(input.utime);
     }
-    result.described = std::exchange(described_, std::nullopt);
+    result.described = waiting_.take();
     result.news = news;
     result.estimate.utime = result.estimate.pose_utime = input.utime;
     result.estimate.chain = chains_.of(result.estimate.keyframe_id);
     return result;
-}
-
-/// Where the camera is when nothing new was seen: where it was, as far as it cannot have moved since.
-OdometryEstimate Odometry::State::stay(std::int64_t utime) const {
-    OdometryEstimate estimate = last_;
-    if (estimate.status == TrackingStatus::kLost) return estimate;
-    estimate.status = TrackingStatus::kStale;
-    const double elapsed = motion_.seconds_since_pose(utime);
-    const Guess guess = motion_.stand_still(utime, keyframes_.current().odom_from_keyframe);
-    const Twist moved = elapsed * motion_.velocity();
-    estimate.covariance += guess.information.diagonal().cwiseInverse().asDiagonal();
-    estimate.covariance += moved * moved.transpose();
-    estimate.velocity.setZero();
-    estimate.features = estimate.inliers = 0;
-    estimate.residual_px = 0;
-    return estimate;
 }
 
 OdometryResult Odometry::State::track(const OdometryFrame& input, const News& news) {
@@ -181,7 +134,7 @@ void Odometry::State::resume(std::span<const Keyframe> keyframes) {
 }
 
 void Odometry::State::start_after(int id) {
-    describe_waiting();
+    waiting_.describe();
     next_id_ = std::max(next_id_, id + 1 + kIdsLeftOut);
     keyframes_.clear();
     relocaliser_.clear();
@@ -198,8 +151,7 @@ OdometryResult Odometry::State::find_again(PreparedFrame& frame) {
         return resumed_ ? result : restart(frame);
     }
     motion_.follow(frame.utime, *located);
-    last_measured_.setZero();
-    unseen_steps_ = 0;
+    estimates_.start();
     method_->begin(frame);
     camera_ = *frame.camera;
     const FrameMotion motion{motion_.velocity(), frame.color_offset_s};
@@ -207,8 +159,8 @@ OdometryResult Odometry::State::find_again(PreparedFrame& frame) {
     if (!can_be_tracked_against(local, options_.min_inliers)) return result;
     resumed_ = false;
     add_keyframe(frame, std::move(local), &*located, motion);
-    Keyframe keyframe = described_at_once();
-    result.estimate = estimate_at(keyframe);
+    Keyframe keyframe = waiting_.describe_at_once();
+    result.estimate = Estimates::at(keyframe, motion_);
     result.estimate.features = located->track.tried;
     result.estimate.inliers = located->track.inliers;
     result.keyframe = std::move(keyframe);
@@ -222,7 +174,7 @@ OdometryResult Odometry::State::restart(PreparedFrame& frame) {
         keyframes_.clear();
         return result;
     }
-    result.estimate = estimate_at(*result.keyframe);
+    result.estimate = Estimates::at(*result.keyframe, motion_);
     result.estimate.features = result.estimate.inliers = static_cast<int>(keyframes_.current().points.size());
     return result;
 }
@@ -232,7 +184,7 @@ OdometryResult Odometry::State::lose(PreparedFrame& frame) {
     motion_.lose();
     method_->lose();
     if (motion_.lost_frames() >= options_.max_lost_frames) result.keyframe = begin(frame);
-    if (result.keyframe) result.estimate = estimate_at(*result.keyframe);
+    if (result.keyframe) result.estimate = Estimates::at(*result.keyframe, motion_);
     return result;
 }
 
@@ -241,64 +193,19 @@ OdometryResult Odometry::State::follow(PreparedFrame& frame, Located& located) {
         readout_.learn(frame.readout_s, located.track.alignment);
     keyframes_.make_current(located.keyframe_id);
     const double elapsed = motion_.seconds_since_pose(frame.utime);
-    unseen_steps_ = located.track.degenerate && !located.track.by_prior ? unseen_steps_ + 1 : 0;
-    last_measured_ = measured_covariance(located, motion_.predict(frame.utime, located.odom_from_keyframe));
+    estimates_.expect(located, motion_, frame.utime);
     motion_.follow(frame.utime, located);
     method_->follow(frame, located, elapsed);
 
     OdometryResult result;
-    OdometryEstimate& estimate = result.estimate;
-    estimate.odom_from_camera = located.odom_from_camera();
-    estimate.keyframe_id = located.keyframe_id;
-    estimate.keyframe_from_camera = located.keyframe_from_camera();
-    estimate.covariance = last_measured_ + covariance_of_moment(located);
-    const bool is_sure = !located.track.degenerate && says_where(estimate.covariance);
-    estimate.status = is_sure ? TrackingStatus::kTracked : TrackingStatus::kDegenerate;
-    estimate.features = located.track.tried;
-    estimate.inliers = located.track.inliers;
-    estimate.residual_px = located.track.alignment.residual_px;
-    estimate.velocity = -motion_.velocity();  // of the camera in the world, not of the world in its frame
-    if (may_become_keyframe() && (located.relocalised || has_moved(options_, located) ||
-                                  method_->wants_keyframe(frame, located, keyframes_.current())))
+    result.estimate = estimates_.of(located, motion_, keyframes_.find(located.keyframe_id));
+    // A frame without its colour has no points to follow: the next one would be tracked by depth alone.
+    if (!images_.waits_for_color() && (located.relocalised || has_moved(options_, located) ||
+                                       method_->wants_keyframe(frame, located, keyframes_.current())))
         change_keyframe(frame, located);
     else
         method_->go_on_from(frame, located.track);
     return result;
-}
-
-OdometryEstimate Odometry::State::estimate_at(const Keyframe& keyframe) const {
-    OdometryEstimate estimate;
-    estimate.status = TrackingStatus::kTracked;
-    estimate.odom_from_camera = motion_.odom_from_camera();
-    estimate.keyframe_id = keyframe.id;
-    return estimate;
-}
-
-/// Located::covariance(); and where a direction is known by the prediction alone, that starts from a pose
-/// that is no surer, and uncertainty adds up from frame to frame. So does that of the velocity, of which
-/// nobody sees how it changes: by white accelerations, the n-th step is n times as uncertain as the first.
-/// Not where a motion prior says it, whose own uncertainty grows with the way. Before the motion follows it.
-Matrix6d Odometry::State::measured_covariance(const Located& located, const Guess& predicted) const {
-    Matrix6d covariance = located.covariance();
-    if (unseen_steps_ == 0) return covariance;
-    const bool goes_on = last_.status != TrackingStatus::kLost && last_.keyframe_id == located.keyframe_id;
-    const Matrix6d before = goes_on ? last_measured_ : Matrix6d::Zero();
-    const double steps2 = static_cast<double>(unseen_steps_) * unseen_steps_;
-    const auto inverse = [](const Matrix6d& matrix) -> Matrix6d {
-        return matrix.ldlt().solve(Matrix6d::Identity());
-    };
-    const Matrix6d& information = located.track.alignment.information;
-    const Matrix6d from_last = inverse(steps2 * inverse(predicted.information) + before);
-    const Matrix6d surer = inverse(information),
-                   unsurer = inverse(information - predicted.information + from_last);
-    return covariance + 0.5 * (unsurer + unsurer.transpose()) - 0.5 * (surer + surer.transpose());
-}
-
-/// After the motion has followed it. It is not in keyframes' edges: loop closures are without it, too, and
-/// the graph weighs one against the other.
-Matrix6d Odometry::State::covariance_of_moment(const Located& located) const {
-    const LocalKeyframe* keyframe = keyframes_.find(located.keyframe_id);
-    return motion_.covariance_of_moment(located, keyframe ? keyframe->velocity : Twist::Zero());
 }
 
 /// A keyframe without an edge. Nothing when the frame has neither texture nor surface.
@@ -309,12 +216,11 @@ std::optional<Keyframe> Odometry::State::begin(PreparedFrame& frame) {
     // Where nothing can begin, the last pose stays as old as it is.
     if (!can_be_tracked_against(local, 2 * options_.min_inliers)) return std::nullopt;
     motion_.start(frame.utime);
-    last_measured_.setZero();
-    unseen_steps_ = 0;
+    estimates_.start();
     method_->begin(frame);
     keyframes_.clear();
     add_keyframe(frame, std::move(local), nullptr, at_rest);
-    return described_at_once();
+    return waiting_.describe_at_once();
 }
 
 /// Goes over to another keyframe that is known, else to a new one of this frame, where that is of use.
@@ -336,16 +242,15 @@ void Odometry::State::change_keyframe(PreparedFrame& frame, const Located& locat
     }
     Keyframe& keyframe = add_keyframe(frame, std::move(local), &located, motion);
     // Where all is seen as loop closures have it, so that edges and closures weigh alike in the graph.
-    keyframe.covariance =
-        located.track.degenerate ? last_measured_ : assumed_covariance(located.track.alignment);
+    keyframe.covariance = located.track.degenerate ? estimates_.measured_covariance()
+                                                   : assumed_covariance(located.track.alignment);
 }
 
 /// With an edge from where the frame was located; nullptr: without one, at the last pose, and a chain begins.
 /// It then waits to be described. Precondition: none waits.
 Keyframe& Odometry::State::add_keyframe(PreparedFrame& frame, LocalKeyframe local, const Located* located,
                                         const FrameMotion& motion) {
-    waiting_ = std::make_unique<UndescribedKeyframe>(frame, motion);
-    Keyframe& keyframe = waiting_->keyframe;
+    Keyframe& keyframe = waiting_.begin(frame, motion);
     keyframe.id = local.id = next_id_++;
     local.utime = frame.utime;
     keyframe.odom_from_camera = local.odom_from_keyframe =
@@ -361,21 +266,9 @@ Keyframe& Odometry::State::add_keyframe(PreparedFrame& frame, LocalKeyframe loca
     return keyframe;
 }
 
-/// The keyframe that waits is described, and the relocaliser knows it.
-Keyframe Odometry::State::described_at_once() {
-    Keyframe keyframe = waiting_->described(options_);
-    if (waiting_->has_color()) relocaliser_.add(keyframe);
-    waiting_.reset();
-    return keyframe;
-}
-
-void Odometry::State::describe_waiting() {
-    if (waiting_) described_ = described_at_once();
-}
-
 std::optional<Keyframe> Odometry::State::finish() {
-    describe_waiting();
-    return std::exchange(described_, std::nullopt);
+    waiting_.describe();
+    return waiting_.take();
 }
 
 Odometry::Odometry(const OdometryOptions& options) {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/option_list.hpp"
+#include "places/matching.hpp"
 
 namespace planemap::odometry {
 
@@ -73,7 +74,8 @@ struct OdometryOptions {
     static constexpr double stamp_sigma_s = 0.0096;  ///< by which all stamps of a sensor are late: any part
                                                      ///< of the 1/30 s that a frame takes to be exposed, read
                                                      ///< out and sent
-    static constexpr int max_descriptor_distance = 64;  ///< bits in which matched descriptors may differ
+    static constexpr int max_descriptor_distance =   ///< bits in which matched descriptors may differ
+        places::MatchingOptions{}.max_distance;
 
     /// Throws std::invalid_argument that names every bad field.
     void validate() const;

@@ -7,7 +7,7 @@
 
 namespace planemap::odometry {
 
-std::optional<Located> PaperMethod::locate(const PreparedFrame& frame, const Surroundings& known) {
+std::optional<Located> PaperMethod::locate(const PreparedFrame& frame, const References& known) {
     if (!frame.gray) return std::nullopt;
     std::vector<Feature> features = planar_features(frame);
     // The next frame is matched with this one's: without any it could not go on from here.
@@ -28,14 +28,11 @@ std::optional<Located> PaperMethod::locate(const PreparedFrame& frame, const Sur
 }
 
 std::optional<Track> PaperMethod::track(const std::vector<Feature>& features, const PreparedFrame& frame,
-                                        const Surroundings& known) const {
+                                        const References& known) const {
     const std::vector<PointTerm> matches =
         match_terms(last_, features, frame, options_.max_descriptor_distance);
-    MotionRansacOptions ransac;
-    ransac.inlier_px = options_.inlier_sigmas * options_.pixel_sigma_px;
-    ransac.min_inliers = options_.min_inliers;
-    ransac.seed = options_.seed;
-    const std::optional<Pose> camera_from_last = ransac_motion(frame.camera->color, matches, ransac);
+    const std::optional<Pose> camera_from_last =
+        ransac_motion(frame.camera->color, matches, motion_ransac_options(options_));
     if (!camera_from_last) return std::nullopt;
     std::optional<Track> track =
         align_matches(frame.camera->color, matches, *camera_from_last, options_.min_inliers);

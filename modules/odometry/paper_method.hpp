@@ -15,7 +15,7 @@ class PaperMethod : public Method {
   public:
     explicit PaperMethod(const OdometryOptions& options) : options_(options) {}
 
-    std::optional<Located> locate(const PreparedFrame& frame, const Surroundings& known) override;
+    std::optional<Located> locate(const PreparedFrame& frame, const References& known) override;
     bool wants_keyframe(const PreparedFrame&, const Located&, const LocalKeyframe&) const override {
         return false;
     }
@@ -29,7 +29,7 @@ class PaperMethod : public Method {
 
   private:
     std::optional<Track> track(const std::vector<Feature>& features, const PreparedFrame& frame,
-                               const Surroundings& known) const;
+                               const References& known) const;
     std::vector<Feature> planar_features(const PreparedFrame& frame) const;
 
     OdometryOptions options_;

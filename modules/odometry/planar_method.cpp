@@ -19,7 +19,7 @@ bool PlanarMethod::is_blind() const {
     return blind_frames_ >= kBlindFrames && blind_frames_ % kBlindRetry != 0;
 }
 
-std::optional<Located> PlanarMethod::locate(const PreparedFrame& frame, const Surroundings& known) {
+std::optional<Located> PlanarMethod::locate(const PreparedFrame& frame, const References& known) {
     // After a pause what lies ahead may only look like what was there: it is not followed, but verified.
     if (!known.motion.is_bounded(frame.utime)) {
         if (!frame.gray) return std::nullopt;
@@ -57,7 +57,7 @@ std::optional<Track> PlanarMethod::second_chances(const PreparedFrame& frame, co
 /// Depth alone: from the guess, from the one by the whole image (which means nothing in the dark, but takes
 /// the guess's place where no motion is known), from where the camera was, and from where its motion would
 /// have led it.
-std::optional<Track> PlanarMethod::track_geometry(const PreparedFrame& frame, const Surroundings& known,
+std::optional<Track> PlanarMethod::track_geometry(const PreparedFrame& frame, const References& known,
                                                   const Guess& guess,
                                                   const std::optional<Guess>& by_image) const {
     const double elapsed = known.motion.seconds_since_pose(frame.utime);

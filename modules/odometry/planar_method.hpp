@@ -17,7 +17,7 @@ class PlanarMethod : public Method {
   public:
     explicit PlanarMethod(const OdometryOptions& options) : options_(options) {}
 
-    std::optional<Located> locate(const PreparedFrame& frame, const Surroundings& known) override;
+    std::optional<Located> locate(const PreparedFrame& frame, const References& known) override;
     bool wants_keyframe(const PreparedFrame& frame, const Located& located,
                         const LocalKeyframe& keyframe) const override;
 
@@ -31,7 +31,7 @@ class PlanarMethod : public Method {
   private:
     std::optional<Track> second_chances(const PreparedFrame& frame, const LocalKeyframe& keyframe,
                                         const Guess& better) const;
-    std::optional<Track> track_geometry(const PreparedFrame& frame, const Surroundings& known,
+    std::optional<Track> track_geometry(const PreparedFrame& frame, const References& known,
                                         const Guess& guess, const std::optional<Guess>& by_image) const;
     /// True when features have not been found for some frames, and are not looked for any harder in this one.
     bool is_blind() const;

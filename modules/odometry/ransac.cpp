@@ -16,8 +16,8 @@ struct Pair {
 };
 
 /// The rigid motion of a triangle, or nothing when it is thin or its sides disagree between the views. It
-/// lays the triangles on each other by their own axes: a hypothesis needs no least squares (core/rigid_fit),
-/// which would take a singular value decomposition each.
+/// lays the triangles on each other by their own axes: a hypothesis needs no least squares
+/// (core/geometry/rigid_fit), which would take a singular value decomposition each.
 std::optional<Pose> motion_of(const std::array<Pair, 3>& t) {
     for (int i = 0; i < 3; ++i) {
         const auto &a = t[static_cast<std::size_t>(i)], &b = t[static_cast<std::size_t>((i + 1) % 3)];
@@ -57,6 +57,12 @@ int count_inliers(const PinholeCamera& camera, std::span<const PointTerm> points
 }
 
 }  // namespace
+
+MotionRansacOptions motion_ransac_options(const OdometryOptions& options) {
+    return {.inlier_px = options.inlier_sigmas * options.pixel_sigma_px,
+            .min_inliers = options.min_inliers,
+            .seed = options.seed};
+}
 
 std::optional<Pose> ransac_motion(const PinholeCamera& camera, std::span<const PointTerm> points,
                                   const MotionRansacOptions& options) {

@@ -48,9 +48,7 @@ double residual_px(const PinholeCamera& camera, const places::KeyframeView& keyf
 }  // namespace
 
 Relocaliser::Relocaliser(const OdometryOptions& options)
-    : options_(options), known_(options.max_known_keyframes) {
-    verification_.matching.max_distance = options.max_descriptor_distance;
-}
+    : options_(options), known_(options.max_known_keyframes) {}
 
 void Relocaliser::add(const Keyframe& keyframe) {
     known_.add(keyframe.id, keyframe.previous_id, keyframe.odom_from_camera,

@@ -102,11 +102,8 @@ AlignmentResult align_robustly(const OdometryOptions& options, const Alignment& 
     AlignmentResult result = align(alignment, guess.camera_from_keyframe);
     const auto terms = static_cast<double>(alignment.points.size());
     if (result.converged && result.inliers >= 0.5 * terms) return result;
-    MotionRansacOptions ransac;
-    ransac.inlier_px = options.inlier_sigmas * options.pixel_sigma_px;
-    ransac.min_inliers = options.min_inliers;
-    ransac.seed = options.seed;
-    const std::optional<Pose> pose = ransac_motion(alignment.camera, alignment.points, ransac);
+    const std::optional<Pose> pose =
+        ransac_motion(alignment.camera, alignment.points, motion_ransac_options(options));
     if (!pose) return result;
     // A guess that did not fit says nothing.
     Alignment free = alignment;

@@ -10,6 +10,7 @@
 
 #include "core/stamp.hpp"
 #include "core/text_file.hpp"
+#include "core/time_step.hpp"
 
 namespace planemap::sensor {
 
@@ -129,11 +130,10 @@ void check_step(const std::vector<Entry>& entries, const std::string& unit, cons
     for (std::size_t i = 1; i < entries.size(); ++i) {
         steps.push_back(time_of(entries[i]) - time_of(entries[i - 1]));
     }
-    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-    std::nth_element(steps.begin(), middle, steps.end());
-    if (*middle >= kLeastUs && *middle <= kMostUs) return;
+    const std::int64_t median_us = median_step(steps);
+    if (median_us >= kLeastUs && median_us <= kMostUs) return;
     throw std::runtime_error(
-        file.string() + ": the median step between its timestamps is " + gap_text(*middle) +
+        file.string() + ": the median step between its timestamps is " + gap_text(median_us) +
         " if they are in " + unit +
         ", as their size says (over 1e11 milliseconds, over 1e14 microseconds, over 1e17 nanoseconds, else "
         "seconds); a camera's is 1 ms to 60 s: write them in seconds");

@@ -5,15 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <iomanip>
 #include <planemap/module_status_t.hpp>
-#include <sstream>
 #include <stdexcept>
 
-#include "core/files.hpp"
-#include "core/stamp.hpp"
 #include "core/validation.hpp"
 #include "messages/channels.hpp"
 #include "messages/decode.hpp"
@@ -38,11 +32,12 @@ SensorShell::SensorShell(messages::Bus& bus, std::unique_ptr<FrameSource> source
     : bus_(bus),
       source_(std::move(source)),
       options_(std::move(options)),
+      position_(options_.position),
+      played_until_(position_.read()),
       last_camera_wall_us_(messages::now_us()) {
     options_.validate();
     for (const std::string& note : source_->notes()) spdlog::warn("{}", note);
     if (options_.live) ahead_ = std::make_unique<ReadAhead>(source_);
-    if (!options_.position.empty()) resume();
     if (bus_.session() != 0) sender_ = static_cast<std::uint64_t>(bus_.session());
     if (!options_.live || !bus_.is_network()) return;
     for (const char* module : {"SEGMENTATION", "ODOMETRY", "OCTOMAP"})
@@ -157,7 +152,8 @@ int SensorShell::poll() {
     if (options_.restamp) restamp(options_.rate_hz > 0 || options_.speed > 0 ? due_us : messages::now_us());
     publish(frame_);
     pending_ = false;
-    keep_position();
+    if (!position_.keep(played_utime_, messages::now_us()))
+        status_.lost("notes of how far the input was played");
     return 0;
 }
 
@@ -179,33 +175,6 @@ void SensorShell::on_status(const messages::RawMessage& message) {
     if (messages::decode<module_status_t>(message.bytes).seq == 0) last_camera_wall_us_ = 0;
 }
 
-/// Reads how far the process before played the source.
-void SensorShell::resume() {
-    std::error_code ignored;
-    if (!std::filesystem::exists(options_.position, ignored)) return;
-    std::istringstream text(read_file(options_.position, 64));
-    std::int64_t utime = 0;
-    if (!(text >> utime)) {  // a power cut while it was written
-        spdlog::warn("{}: holds no time stamp; playing from the beginning", options_.position.string());
-        return;
-    }
-    played_until_ = utime;
-    spdlog::info("goes on after the frame at {}", seconds_text(utime));
-}
-
-/// Ten times a second, with the kernel: a kill loses no more.
-void SensorShell::keep_position() {
-    constexpr std::int64_t kKeepPeriod_us = 100000;
-    const std::int64_t now = messages::now_us();
-    if (options_.position.empty() || now - kept_wall_us_ < kKeepPeriod_us) return;
-    kept_wall_us_ = now;
-    std::ofstream(options_.position, std::ios::app).close();  // it is there
-    std::fstream file(options_.position, std::ios::in | std::ios::out);
-    file << std::setw(20) << played_utime_ << "\n";  // over the last one, in one write: never half of it
-    file.close();
-    if (!file) status_.lost("notes of how far the input was played");
-}
-
 /// What failed of what the source made beside its frames; empty: nothing.
 std::string SensorShell::end_source() {
     if (ahead_ && !ahead_->stop()) return {};
@@ -213,8 +182,7 @@ std::string SensorShell::end_source() {
 }
 
 void SensorShell::finish() {
-    std::error_code ignored;
-    if (ended_ && !options_.position.empty()) std::filesystem::remove(options_.position, ignored);
+    if (ended_) position_.remove();
     if (const std::string fault = end_source(); !fault.empty()) throw std::runtime_error(fault);
     if (!ended_) return;
     for (const std::string& complaint : source_->complaints()) spdlog::warn("{}", complaint);

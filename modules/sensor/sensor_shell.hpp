@@ -9,6 +9,7 @@
 
 #include "messages/convert.hpp"
 #include "messages/process.hpp"
+#include "sensor/position_file.hpp"
 #include "sensor/read_ahead.hpp"
 #include "sensor/source.hpp"
 
@@ -72,8 +73,6 @@ class SensorShell : public messages::Shell {
     void publish_camera(std::int64_t utime);
     bool camera_is_due(std::int64_t utime) const;
     Read read();
-    void resume();
-    void keep_position();
     void on_status(const messages::RawMessage& message);
     bool next(ReadResult& result);
     std::string end_source();
@@ -85,15 +84,15 @@ class SensorShell : public messages::Shell {
     messages::Bus& bus_;
     std::shared_ptr<FrameSource> source_;
     SensorShellOptions options_;
-    std::unique_ptr<ReadAhead> ahead_;  ///< only live
+    PositionFile position_;
+    std::optional<std::int64_t> played_until_;  ///< stamp of the last frame of the process before
+    std::unique_ptr<ReadAhead> ahead_;          ///< only live
     messages::ModuleStatus status_{"sensor"};
     std::optional<std::uint64_t> sender_;  ///< tells this sender from another; none in one process, where a
                                            ///< run gives the same bytes again
     SensorFrame frame_;
     bool pending_ = false, ended_ = false;
-    std::optional<std::int64_t> played_until_;  ///< stamp of the last frame of the process before
-    std::int64_t played_utime_ = 0;             ///< of the last frame published, as the source has it
-    std::int64_t kept_wall_us_ = 0;             ///< when the position was kept last
+    std::int64_t played_utime_ = 0;  ///< of the last frame published, as the source has it
     std::int64_t frames_ = 0, broken_ = 0, colorless_ = 0, ends_missing_ = 0;
     std::int64_t start_wall_us_ = 0, start_utime_ = 0, start_frame_ = 0, last_utime_ = 0;
     std::int64_t last_camera_utime_ = 0, last_camera_wall_us_ = 0;

@@ -5,6 +5,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "core/joined.hpp"
 #include "core/rounding.hpp"
 #include "core/sensor_preset.hpp"
 #include "core/validation.hpp"
@@ -38,12 +39,6 @@ const std::map<std::string, KnownWorld>& worlds() {
         {"wallpaper", {&make_wallpaper, "an empty room of 5 x 4 m whose wall pattern repeats every 2 m"}},
     };
     return kWorlds;
-}
-
-std::string joined(const std::vector<std::string>& names) {
-    std::string text;
-    for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-    return text;
 }
 
 void set_parameter(SimulatorOptions& options, const std::string& parameter, std::vector<std::string>& seen) {

@@ -58,6 +58,10 @@ TEST(LiveSource, IsOpenedAgainBySerialNumberAfterItWasUnplugged) {
             EXPECT_GT(frame.utime, last) << "the device's clock began again, the host's time did not";
             EXPECT_EQ(frame.color_utime, frame.utime + 5);
             EXPECT_EQ(result.lost.at("frames of a kind"), 2);
+            EXPECT_EQ(
+                result.lost.count("synchronisations with the camera's clock, which began again or jumped"),
+                frames == 3 ? 1u : 0u)
+                << frames;
             last = frame.utime;
         } else {
             ASSERT_EQ(result.status, ReadResult::Status::kNothing);

@@ -6,6 +6,7 @@
 
 #include "core/trajectory_file.hpp"
 #include "messages/session.hpp"
+#include "messages/told_status.hpp"
 #include "places/synthetic.hpp"
 #include "shell_fixture.hpp"
 #include "temporary_folder.hpp"
@@ -142,7 +143,7 @@ TEST_F(GraphShellTest, WhatItLeavesOutIsCounted) {
     for (const int id : {3, 4, 2147483647, 5, 0, 1, 6}) publish(id);
     EXPECT_EQ(trajectories->size(), 4u) << "3 to 6; nothing stops at the others";
     EXPECT_EQ(shell.status().losses().at("keyframes with an id out of order"), 3);
-    EXPECT_EQ(shell.status().dropped_count(), 3);
+    EXPECT_EQ(test::told(shell.status()).dropped, 3);
     EXPECT_EQ(shell.status().losses().at(
                   "features without a point before the camera, or beyond the most of a keyframe"),
               4 * 5);
@@ -224,7 +225,7 @@ TEST_F(GraphShellTest, AProcessThatIsStartedAgainGoesOnInItsWorldFrameWithItsIds
                      messages::to_message(walk.keyframes[i], static_cast<std::int32_t>(i), 7));
     bus_.drain();
     EXPECT_EQ(shell.graph().trajectory().keyframes.size(), walk.keyframes.size());
-    EXPECT_EQ(shell.status().dropped_count(), 0);
+    EXPECT_EQ(test::told(shell.status()).dropped, 0);
     // Odometry was started again, too: another session that follows, ids further on, a part of its own.
     Keyframe next = walk.keyframes.back();
     next.id += 101;

@@ -35,7 +35,7 @@ PlanarRegion floor_seen(const Pose& world_from_camera, double height = -1) {
 }
 
 TEST(Landmarks, AFloorSeenAgainIsTheSameLandmark) {
-    Landmarks landmarks({});
+    Landmarks landmarks(landmark_options({}));
     for (int node = 0; node < 3; ++node) {
         const Pose pose = make_pose({0.1 * node, 0, 0.01 * node}, Eigen::Quaterniond(1, 0.005 * node, 0, 0));
         EXPECT_LT(landmarks.add(node, {floor_seen(Pose::Identity())}, pose, kNoise), node == 0 ? 1e-9 : 10.0);
@@ -45,7 +45,7 @@ TEST(Landmarks, AFloorSeenAgainIsTheSameLandmark) {
 }
 
 TEST(Landmarks, OtherPlanesAreOtherLandmarks) {
-    Landmarks landmarks({});
+    Landmarks landmarks(landmark_options({}));
     const Pose eye = Pose::Identity();
     landmarks.add(0, {floor_seen(eye)}, eye, kNoise);
     landmarks.add(1, {floor_seen(eye, -1.1)}, eye, kNoise);  // a step of 10 cm
@@ -60,7 +60,7 @@ TEST(Landmarks, OtherPlanesAreOtherLandmarks) {
 }
 
 TEST(Landmarks, ARegionThatFitsTwoIsLeftOut) {
-    Landmarks landmarks({});
+    Landmarks landmarks(landmark_options({}));
     const Pose eye = Pose::Identity();
     landmarks.add(0, {floor_seen(eye, -1.0)}, eye, kNoise);
     landmarks.add(0, {floor_seen(eye, -1.08)}, eye, kNoise);
@@ -70,7 +70,7 @@ TEST(Landmarks, ARegionThatFitsTwoIsLeftOut) {
 }
 
 TEST(Landmarks, MergeJoinsWhatCoincidesAfterTheGraphMoved) {
-    Landmarks landmarks({});
+    Landmarks landmarks(landmark_options({}));
     const Pose eye = Pose::Identity();
     landmarks.add(0, {floor_seen(eye)}, eye, kNoise);
     landmarks.add(1, {floor_seen(eye)}, make_pose({0, 0, 0.2}, Eigen::Quaterniond::Identity()), kNoise);
@@ -86,7 +86,7 @@ TEST(Landmarks, MergeJoinsWhatCoincidesAfterTheGraphMoved) {
 }
 
 TEST(Landmarks, ANodeThatGoesLeavesWhatItSawToItsKeeper) {
-    Landmarks landmarks({});
+    Landmarks landmarks(landmark_options({}));
     const Pose eye = Pose::Identity();
     const Pose aside = make_pose({1, 0, 0}, Eigen::Quaterniond::Identity());
     const auto wall = [](const Pose& pose) { return rectangle(pose, {0, 2, 0}, 1.5 * kX, 1.0 * kZ); };
@@ -112,7 +112,7 @@ TEST(Landmarks, ANodeThatGoesLeavesWhatItSawToItsKeeper) {
 
 /// A floor that the poses put 15 cm apart: two landmarks, until the map says that it is one surface.
 TEST(Landmarks, ASurfaceOfTheMapIsOneLandmark) {
-    Landmarks landmarks({});
+    Landmarks landmarks(landmark_options({}));
     const Pose eye = Pose::Identity(), raised = make_pose({0, 0, 0.15}, Eigen::Quaterniond::Identity());
     const PlanarRegion wall = rectangle(eye, {0, 2, 0}, 1.5 * kX, 1.0 * kZ);
     const std::vector<Pose> poses{eye, eye, raised, raised};
@@ -139,7 +139,7 @@ TEST(Landmarks, ASurfaceOfTheMapIsOneLandmark) {
 
 /// One that fits two landmarks is of neither, until the map knows.
 TEST(Landmarks, TheMapTellsWhichOfTwoARegionShows) {
-    Landmarks landmarks({});
+    Landmarks landmarks(landmark_options({}));
     const Pose eye = Pose::Identity();
     landmarks.add(0, {floor_seen(eye, -1.0)}, eye, kNoise);
     landmarks.add(1, {floor_seen(eye, -1.08)}, eye, kNoise);
@@ -153,7 +153,7 @@ TEST(Landmarks, TheMapTellsWhichOfTwoARegionShows) {
 }
 
 TEST(Landmarks, SurfacesOfNothingChangeNothing) {
-    Landmarks landmarks({});
+    Landmarks landmarks(landmark_options({}));
     EXPECT_FALSE(landmarks.adopt({}, {}));
     landmarks.add(0, {floor_seen(Pose::Identity())}, Pose::Identity(), kNoise);
     EXPECT_FALSE(landmarks.adopt({{-1, 3, 4}}, {Pose::Identity()}));
@@ -161,9 +161,51 @@ TEST(Landmarks, SurfacesOfNothingChangeNothing) {
 }
 
 TEST(Landmarks, NothingComesOfRegionsWithoutAPlane) {
-    Landmarks landmarks({});
+    Landmarks landmarks(landmark_options({}));
     EXPECT_EQ(landmarks.add(0, {PlanarRegion{}}, Pose::Identity(), kNoise), 0);
     EXPECT_TRUE(landmarks.landmarks().empty());
+}
+
+/// What the graph weighs sightings by: a noisier sensor's are let go farther.
+TEST(Landmarks, ASensorOfTwiceTheNoiseWeighsLess) {
+    DepthNoise twice = kNoise;
+    twice.base_m *= 2;
+    twice.quadratic_per_m *= 2;
+    const LandmarkOptions options = landmark_options({});
+    const auto weight_of = [&](const DepthNoise& noise, double depth) {
+        Landmarks landmarks(options);
+        for (int node = 0; node < 2; ++node)
+            landmarks.add(node, {rectangle(Pose::Identity(), depth * kZ, 1.5 * kX, 1.0 * kY)},
+                          Pose::Identity(), noise);
+        return landmarks.shared().at(0).sqrt_weight;
+    };
+    for (const double depth : {1.0, 2.0, 4.0}) {
+        EXPECT_NEAR(weight_of(kNoise, depth), 1 / std::hypot(options.sigma_m, kNoise.sigma(depth)), 1e-9);
+        EXPECT_NEAR(weight_of(twice, depth), 1 / std::hypot(options.sigma_m, 2 * kNoise.sigma(depth)), 1e-9);
+    }
+    EXPECT_LT(weight_of(twice, 4), 0.55 * weight_of(kNoise, 4))
+        << "far away the sensor's noise is nearly all";
+}
+
+/// How far a drifted node is drawn back to the floor by its sightings, of 2 cm.
+TEST(Landmarks, ASensorOfTwiceTheNoiseDrawsTheGraphLess) {
+    DepthNoise twice = kNoise;
+    twice.base_m *= 2;
+    twice.quadratic_per_m *= 2;
+    const auto drawn = [&](const DepthNoise& noise) {
+        std::vector<Pose> poses(2, Pose::Identity());
+        poses[1].translation().z() = 0.02;
+        Landmarks landmarks(landmark_options({}));
+        const PlanarRegion seen = rectangle(Pose::Identity(), 4 * kZ, 1.5 * kX, 1.0 * kY);
+        for (int node = 0; node < 2; ++node) landmarks.add(node, {seen}, Pose::Identity(), noise);
+        const std::vector<PoseEdge> edges{{0, 1, poses[1], Matrix6d::Identity() / 0.02, false}};
+        std::vector<Landmark> planes = landmarks.landmarks();
+        optimise(poses, edges, 0, {}, &planes, landmarks.shared());
+        return 0.02 - poses[1].translation().z();
+    };
+    EXPECT_GT(drawn(kNoise), 0.001);
+    EXPECT_GT(drawn(twice), 0);
+    EXPECT_LT(drawn(twice), drawn(kNoise));
 }
 
 /// A walk over a floor with noisy odometry: the shared floor holds height, roll and pitch.
@@ -173,7 +215,7 @@ TEST(Landmarks, ASharedFloorStopsDrift) {
     std::vector<Pose> truth{Pose::Identity()}, drifting{Pose::Identity()};
     Pose odometry = Pose::Identity();
     std::vector<PoseEdge> edges;
-    Landmarks landmarks({});
+    Landmarks landmarks(landmark_options({}));
     landmarks.add(0, {floor_seen(truth[0])}, truth[0], kNoise);
     for (int node = 1; node < 30; ++node) {
         Twist step = Twist::Zero(), error;
@@ -207,7 +249,7 @@ TEST(Landmarks, ASharedFloorStopsDrift) {
 TEST(Landmarks, AWrongSightingIsLetGo) {
     std::vector<Pose> poses(5, Pose::Identity());
     std::vector<PoseEdge> edges;
-    Landmarks landmarks({});
+    Landmarks landmarks(landmark_options({}));
     for (int node = 0; node < 5; ++node) {
         if (node > 0) edges.push_back({node - 1, node, Pose::Identity(), Matrix6d::Identity() / 0.01, false});
         landmarks.add(node, {floor_seen(poses[static_cast<std::size_t>(node)])},

@@ -22,9 +22,9 @@ class SurroundingsTest : public testing::Test {
         }
         return views;
     }
-    std::vector<PlacedView> placed(const std::vector<places::KeyframeView>& views, double drift_m = 0.1,
-                                   const Pose& move = Pose::Identity()) const {
-        std::vector<PlacedView> placed;
+    std::vector<SurroundingView> placed(const std::vector<places::KeyframeView>& views, double drift_m = 0.1,
+                                        const Pose& move = Pose::Identity()) const {
+        std::vector<SurroundingView> placed;
         for (std::size_t i = 0; i < views.size(); ++i)
             placed.push_back({&views[i], move * poses_[i], drift_m});
         return placed;

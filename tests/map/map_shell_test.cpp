@@ -15,6 +15,7 @@
 #include "messages/log.hpp"
 #include "messages/sample_messages.hpp"
 #include "messages/session.hpp"
+#include "messages/told_status.hpp"
 #include "shell_fixture.hpp"
 
 namespace planemap::map {
@@ -286,7 +287,7 @@ TEST_F(MapShellTest, WhatItLeavesOutIsCounted) {
     EXPECT_EQ(losses.at("keyframes with an id out of order"), 1);
     EXPECT_EQ(losses.at("keyframe poses that are none or out of range"), 1);
     EXPECT_EQ(losses.size(), 3u);
-    EXPECT_EQ(shell.status().dropped_count(), 1);
+    EXPECT_EQ(test::told(shell.status()).dropped, 1);
 }
 
 TEST_F(MapShellTest, AnOutputThatCannotBeWrittenIsAnErrorAtOnce) {
@@ -353,7 +354,7 @@ TEST_F(MapShellTest, AProcessThatIsStartedAgainGoesOnWithItsMapAndDoublesNothing
                  messages::to_message(keyframe, 0, 7));  // odometry sends it again
     bus_.drain();
     EXPECT_EQ(shell.mapper().map().planes[0].inliers, before.planes[0].inliers);
-    EXPECT_EQ(shell.status().dropped_count(), 0);
+    EXPECT_EQ(test::told(shell.status()).dropped, 0);
     // Odometry was started again, too, and is followed at once.
     Keyframe next = keyframe;
     next.id += 101;

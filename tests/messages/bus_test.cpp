@@ -24,6 +24,15 @@
 namespace planemap::messages {
 namespace {
 
+/// The messages that the bus says it could not send.
+std::int64_t unsent(const Bus& bus) {
+    const std::string trouble = bus.trouble();
+    const std::size_t at = trouble.find(" messages could not be sent");
+    if (at == std::string::npos) return 0;
+    const std::size_t before = trouble.substr(0, at).rfind(' ');
+    return std::stoll(trouble.substr(before == std::string::npos ? 0 : before + 1));
+}
+
 TEST(Bus, DeliversInOrderAndDropsNothingOnMemq) {
     Bus bus("memq://");
     std::vector<std::int32_t> seen;
@@ -49,7 +58,7 @@ TEST(Bus, AHandlerThatThrowsIsCountedAndTheNextMessagesArrive) {
     }
     bus.drain();
     EXPECT_EQ(good, 3);
-    EXPECT_EQ(bus.handler_errors(), 3);
+    EXPECT_THAT(bus.trouble(), testing::HasSubstr("a message could not be used, times: 3 ("));
 }
 
 TEST(Bus, AMessageThatSeveralHandlersDropIsOneComplaint) {
@@ -58,7 +67,7 @@ TEST(Bus, AMessageThatSeveralHandlersDropIsOneComplaint) {
         bus.subscribe("ODO", [](const RawMessage& m) { decode<odometry_t>(m.bytes); });
     for (int i = 0; i < 5; ++i) bus.publish_bytes("ODO", std::vector<std::uint8_t>(40, 0xff));
     bus.drain();
-    EXPECT_EQ(bus.handler_errors(), 15);
+    EXPECT_THAT(bus.trouble(), testing::HasSubstr("a message could not be used, times: 15 ("));
     EXPECT_EQ(bus.complaints().count(), 5);
     ASSERT_EQ(bus.complaints().totals().size(), 1u);
     EXPECT_NE(bus.complaints().totals()[0].find("(5 times)"), std::string::npos);
@@ -167,7 +176,7 @@ TEST(Bus, AServerThatComesLateIsFoundAndOneThatGoesAndComesAgainToo) {
     std::size_t size = 0;
     const auto send = [&] { from.publish_bytes("A", std::vector<std::uint8_t>(++size)); };
     send();  // into nothing
-    EXPECT_EQ(from.unsent(), 1);
+    EXPECT_EQ(unsent(from), 1);
     EXPECT_FALSE(handle_until(
         {&from, &to}, [&] { return from.connected(); }, 1.3));
     EXPECT_EQ(from.complaints().totals().size(), 1u) << "said once";
@@ -185,9 +194,9 @@ TEST(Bus, AServerThatComesLateIsFoundAndOneThatGoesAndComesAgainToo) {
             EXPECT_EQ(seen.back(), size);
         }
         ASSERT_TRUE(handle_until({&from, &to}, [&] { return !from.connected() && !to.connected(); })) << life;
-        const std::int64_t unsent = from.unsent();
+        const std::int64_t before = unsent(from);
         send();
-        EXPECT_EQ(from.unsent(), unsent + 1);
+        EXPECT_EQ(unsent(from), before + 1);
     }
     EXPECT_NE(from.trouble().find("4 messages could not be sent"), std::string::npos) << from.trouble();
 }
@@ -229,7 +238,7 @@ TEST(Bus, APrefixLeavesRoomForEveryChannel) {
           channels::kKeyframe, channels::kTrajectory, channels::kMap, channels::kOctomapSize,
           "PLANEMAP_STATUS_SEGMENTATION"})
         bus.publish_bytes(channel, std::vector<std::uint8_t>(4));
-    EXPECT_EQ(bus.unsent(), 0);
+    EXPECT_EQ(unsent(bus), 0);
     EXPECT_THROW(bus.publish_bytes(std::string(33, 'C'), std::vector<std::uint8_t>(4)),
                  std::invalid_argument);
     for (const std::string& bad : {longest + "P", std::string("robot.*"), std::string("two words")}) {
@@ -252,7 +261,7 @@ TEST(Bus, AServerThatVanishesWhileASenderDoesNotListenIsNoticed) {
         std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
     EXPECT_FALSE(bus.connected());
-    EXPECT_GT(bus.unsent(), 0);
+    EXPECT_GT(unsent(bus), 0);
     EXPECT_FALSE(bus.handle(0));
 }
 
@@ -269,14 +278,14 @@ TEST(Bus, AServerThatHangsIsLeftAndFoundAgain) {
     EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(6));
     EXPECT_NE(bus.trouble().find("the server hangs"), std::string::npos) << bus.trouble();
     bus.publish_bytes("A", std::vector<std::uint8_t>(1));
-    EXPECT_EQ(bus.unsent(), 2) << "of " << sent;
+    EXPECT_EQ(unsent(bus), 2) << "of " << sent;
     bus.handle(1000);
     bus.handle(1000);
     EXPECT_NE(bus.trouble().find("does not answer as an LCM server"), std::string::npos) << bus.trouble();
     server.go_on();
     EXPECT_TRUE(handle_until({&bus}, [&] { return bus.connected(); }));
     bus.publish_bytes("A", std::vector<std::uint8_t>(1));
-    EXPECT_EQ(bus.unsent(), 2);
+    EXPECT_EQ(unsent(bus), 2);
 }
 
 /// A server that takes no more holds a sender up, so that nothing is lost, but not for longer than is wanted.

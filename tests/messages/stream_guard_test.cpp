@@ -28,7 +28,7 @@ TEST_F(Admission, ARepeatedMessageIsNotUsedAndNoLossBesideTheMainStream) {
     EXPECT_FALSE(trajectories.admits(0, 0, std::nullopt, bytes));
     EXPECT_TRUE(trajectories.admits(0, 1, std::nullopt, more));
     EXPECT_EQ(test::told(status_).received, 0) << "not the main stream";
-    EXPECT_EQ(status_.dropped_count(), 0);
+    EXPECT_EQ(test::told(status_).dropped, 0);
     EXPECT_TRUE(status_.losses().empty());
     // Of the main stream nobody sends a message again but an old log.
     EXPECT_TRUE(admits(0));
@@ -46,7 +46,7 @@ TEST_F(Admission, WhatAnotherSenderSaysIsCountedAndNamed) {
     }
     EXPECT_EQ(status_.losses().at("keyframes of another sender"), 9);
     EXPECT_EQ(status_.losses().at("keyframes from before those that came"), 1);
-    EXPECT_EQ(status_.dropped_count(), 10);
+    EXPECT_EQ(test::told(status_).dropped, 10);
 }
 
 TEST_F(Admission, SessionsTellTwoSendersOfTheSameNumbersAndTimesApart) {
@@ -86,7 +86,7 @@ TEST_F(Admission, BesideTheMainStreamALateOneIsOutdated) {
     std::int64_t lost = 0;
     for (const auto& [what, count] : status_.losses()) lost += count;
     EXPECT_EQ(lost, 2);
-    EXPECT_EQ(status_.dropped_count(), 0);
+    EXPECT_EQ(test::told(status_).dropped, 0);
 }
 
 }  // namespace

@@ -22,6 +22,7 @@
 #include "messages/channels.hpp"
 #include "messages/convert.hpp"
 #include "messages/decode.hpp"
+#include "messages/told_status.hpp"
 #include "octomap/insertion_benchmark.hpp"
 #include "octomap/octomap_shell.hpp"
 
@@ -103,8 +104,103 @@ struct Pending {
     KeyframeTrajectory trajectory;
 };
 
-int run(int keyframes, double rate_hz, bool background) {
+/// The graph's trajectory of keyframes that come one after the other.
+class GrowingTrajectory {
+  public:
+    int size() const { return static_cast<int>(trajectory_.keyframes.size()); }
+
+    /// Adds a keyframe; each hundredth closes a loop, which moves the hundred before it, each five hundredth
+    /// one that moves all.
+    Pending add(const Pose& world_from_camera) {
+        const int made = size();
+        trajectory_.keyframes.push_back({made, made + 1, world_from_camera});
+        if (made % 100 == 99) {
+            const int from = made % 500 == 499 ? 0 : made - 99;
+            for (int id = from; id <= made; ++id)
+                trajectory_.keyframes[static_cast<std::size_t>(id)].world_from_camera.translation().x() +=
+                    0.01 * (id - from) / (made - from + 1.0);
+            ++trajectory_.revision;
+        }
+        trajectory_.utime = made + 1;
+        return {made, trajectory_};
+    }
+
+  private:
+    KeyframeTrajectory trajectory_;
+};
+
+/// How long the shell kept whoever feeds it waiting.
+class HandlerTimes {
+  public:
+    template <typename Work>
+    void add(const Work& work) {
+        const Clock::time_point before = Clock::now();
+        work();
+        times_ms_.push_back(ms(Clock::now() - before));
+    }
+    /// Precondition: there are some.
+    void print(double fed_s) {
+        std::sort(times_ms_.begin(), times_ms_.end());
+        std::printf("fed in %.1f s; longest handler %.1f ms, 99.9 %% of them below %.1f ms\n", fed_s,
+                    times_ms_.back(), times_ms_[times_ms_.size() * 999 / 1000]);
+    }
+
+  private:
+    std::vector<double> times_ms_;
+};
+
+/// A frame, its keyframe and the trajectory with it, as the shell hears them.
+void publish(messages::Bus& bus, const Pending& next, const View& view, HandlerTimes& times) {
+    bot_core::images_t frame = view.frame;
+    frame.utime = next.id + 1;
+    Keyframe keyframe;
+    keyframe.id = next.id;
+    keyframe.utime = next.id + 1;
+    bus.publish(messages::channels::kFrame, frame);
+    times.add([&] { bus.drain(); });
+    bus.publish(messages::channels::kKeyframe, messages::to_message(keyframe, next.id));
+    times.add([&] { bus.drain(); });
+    bus.publish(messages::channels::kTrajectory, messages::to_message(next.trajectory, next.id));
+    times.add([&] { bus.drain(); });
+}
+
+/// Feeds keyframes at their rate; of those that come while the shell is busy, eight wait. Returns how many
+/// were dropped.
+int feed(messages::Bus& bus, OctomapShell& shell, int keyframes, double rate_hz, HandlerTimes& times) {
     const std::vector<View> views = make_views();
+    const auto view_of = [&](int id) -> const View& {
+        return views[static_cast<std::size_t>(id) % views.size()];
+    };
+    GrowingTrajectory trajectory;
+    std::deque<Pending> queue;
+    int overflow = 0;
+    const Clock::time_point start = Clock::now();
+    const auto due = [&] { return static_cast<int>(ms(Clock::now() - start) * 1e-3 * rate_hz); };
+    while (trajectory.size() < keyframes || !queue.empty()) {
+        while (trajectory.size() < std::min(due(), keyframes)) {
+            Pending made = trajectory.add(view_of(trajectory.size()).world_from_camera);
+            if (queue.size() >= 8) {
+                ++overflow;
+            } else {
+                queue.push_back(std::move(made));
+            }
+        }
+        if (queue.empty()) {
+            times.add([&] { shell.poll(); });
+            bus.drain();
+            std::this_thread::sleep_for(std::chrono::milliseconds(2));
+            continue;
+        }
+        const Pending next = std::move(queue.front());
+        queue.pop_front();
+        publish(bus, next, view_of(next.id), times);
+        times.add([&] { shell.poll(); });
+        bus.drain();
+    }
+    return overflow;
+}
+
+int run(int keyframes, double rate_hz, bool background) {
     std::printf("%d keyframes at %.0f a second, built in the %s\n", keyframes, rate_hz,
                 background ? "background" : "handler");
     messages::Bus bus("memq://");
@@ -120,71 +216,21 @@ int run(int keyframes, double rate_hz, bool background) {
     bus.publish(messages::channels::kCameraInfo, messages::to_message(camera(), 0, 0));
     bus.drain();
 
-    std::vector<double> handler_ms;
-    KeyframeTrajectory trajectory;
-    std::deque<Pending> queue;
-    int overflow = 0, made = 0;
+    HandlerTimes times;
     const Clock::time_point start = Clock::now();
-    const auto due = [&] { return static_cast<int>(ms(Clock::now() - start) * 1e-3 * rate_hz); };
-    const auto busy = [&](auto&& work) {
-        const Clock::time_point before = Clock::now();
-        work();
-        handler_ms.push_back(ms(Clock::now() - before));
-    };
-    while (made < keyframes || !queue.empty()) {
-        for (; made < std::min(due(), keyframes); ++made) {
-            const View& view = views[static_cast<std::size_t>(made) % views.size()];
-            trajectory.keyframes.push_back({made, made + 1, view.world_from_camera});
-            if (made % 100 == 99) {
-                const int from = made % 500 == 499 ? 0 : made - 99;
-                for (int id = from; id <= made; ++id)
-                    trajectory.keyframes[static_cast<std::size_t>(id)].world_from_camera.translation().x() +=
-                        0.01 * (id - from) / (made - from + 1.0);
-                ++trajectory.revision;
-            }
-            trajectory.utime = made + 1;
-            if (queue.size() >= 8) {
-                ++overflow;
-            } else {
-                queue.push_back({made, trajectory});
-            }
-        }
-        if (queue.empty()) {
-            busy([&] { shell->poll(); });
-            bus.drain();
-            std::this_thread::sleep_for(std::chrono::milliseconds(2));
-            continue;
-        }
-        const Pending next = std::move(queue.front());
-        queue.pop_front();
-        bot_core::images_t frame = views[static_cast<std::size_t>(next.id) % views.size()].frame;
-        frame.utime = next.id + 1;
-        Keyframe keyframe;
-        keyframe.id = next.id;
-        keyframe.utime = next.id + 1;
-        bus.publish(messages::channels::kFrame, frame);
-        busy([&] { bus.drain(); });
-        bus.publish(messages::channels::kKeyframe, messages::to_message(keyframe, next.id));
-        busy([&] { bus.drain(); });
-        bus.publish(messages::channels::kTrajectory, messages::to_message(next.trajectory, next.id));
-        busy([&] { bus.drain(); });
-        busy([&] { shell->poll(); });
-        bus.drain();
-    }
+    const int overflow = feed(bus, *shell, keyframes, rate_hz, times);
     const double fed_s = 1e-3 * ms(Clock::now() - start);
     const Clock::time_point stop = Clock::now();
     const std::clock_t stop_cpu = std::clock();
     shell->finish();
     bus.drain();
     const double finished_ms = ms(Clock::now() - stop);
-    const std::int64_t dropped = shell->status().dropped_count() + overflow;
+    const std::int64_t dropped = test::told(shell->status()).dropped + overflow;
     const std::string line = shell->status().line();
     shell.reset();
     const double stop_ms = ms(Clock::now() - stop);
     const double stop_cpu_ms = 1e3 * static_cast<double>(std::clock() - stop_cpu) / CLOCKS_PER_SEC;
-    std::sort(handler_ms.begin(), handler_ms.end());
-    std::printf("fed in %.1f s; longest handler %.1f ms, 99.9 %% of them below %.1f ms\n", fed_s,
-                handler_ms.back(), handler_ms[handler_ms.size() * 999 / 1000]);
+    times.print(fed_s);
     std::printf("%lld keyframes dropped, %d states, the last one with %d keyframes, %lld nodes\n",
                 static_cast<long long>(dropped), states, last.n_keyframes,
                 static_cast<long long>(last.n_nodes));

@@ -5,6 +5,7 @@
 #include <planemap/map_size_t.hpp>
 #include <thread>
 
+#include "messages/told_status.hpp"
 #include "shell_fixture.hpp"
 #include "temporary_folder.hpp"
 
@@ -73,7 +74,7 @@ TEST_F(OctomapShellTest, AKeyframeWhoseFrameNeverCameIsCounted) {
     keyframe.utime = 5;
     bus_.publish(messages::channels::kKeyframe, messages::to_message(keyframe, 0));
     bus_.drain();
-    EXPECT_EQ(shell.status().dropped_count(), 1);
+    EXPECT_EQ(test::told(shell.status()).dropped, 1);
     EXPECT_EQ(shell.status().losses().at("keyframes whose frame was gone"), 1);
 }
 
@@ -86,9 +87,9 @@ TEST_F(OctomapShellTest, AKeyframeThatNeverGotAPoseIsCounted) {
     keyframe.utime = 1000;
     bus_.publish(messages::channels::kKeyframe, messages::to_message(keyframe, 0));
     bus_.drain();
-    EXPECT_EQ(shell.status().dropped_count(), 0);
+    EXPECT_EQ(test::told(shell.status()).dropped, 0);
     shell.finish();
-    EXPECT_EQ(shell.status().dropped_count(), 1);
+    EXPECT_EQ(test::told(shell.status()).dropped, 1);
     EXPECT_EQ(shell.status().losses().at("keyframes that never got a pose"), 1);
 }
 
@@ -115,7 +116,7 @@ TEST_F(OctomapShellTest, FrozenKeyframesAreCounted) {
     walk(5);
     bus_.drain();
     shell.finish();
-    EXPECT_EQ(shell.status().dropped_count(), 0);
+    EXPECT_EQ(test::told(shell.status()).dropped, 0);
     EXPECT_EQ(shell.status().losses().at("depth images of old keyframes, which stay at their pose"), 3);
 }
 
@@ -129,7 +130,7 @@ TEST_F(OctomapShellTest, TheBackgroundComesToTheSameSizes) {
     bus_.drain();
     correct(0.04);
     bus_.drain();
-    EXPECT_EQ(background.status().dropped_count(), 0);
+    EXPECT_EQ(test::told(background.status()).dropped, 0);
     // No time is asserted: it is asked until it has caught up, which the test's time-out bounds.
     while (sizes->empty() || sizes->back().revision != 13 ||
            background.status().line().find("not yet where") != std::string::npos) {

@@ -37,7 +37,8 @@ TEST(OctomapWorker, EndsAtTheTreeOfTheLastPoses) {
     const auto state = worker.newer_state();
     const KeyframeTrajectory last = moved(40, 0.39, 39);
     for (const KeyframePose& keyframe : last.keyframes)
-        alone.keep(keyframe.id, scan(keyframe.id), keyframe.world_from_camera);
+        alone.keep(keyframe.id, scan(keyframe.id), keyframe.world_from_camera,
+                   {keyframe.id, Pose::Identity()});
     alone.flush();
     ASSERT_TRUE(state.has_value());
     EXPECT_TRUE(state->is_up_to_date);

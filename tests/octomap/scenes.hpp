@@ -2,11 +2,13 @@
 // What the tests of the OctoMap share: a small camera, its depth images and poses.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "core/camera.hpp"
 #include "core/image.hpp"
 #include "core/keyframe.hpp"
+#include "octomap/octomap_builder.hpp"
 
 namespace planemap::test {
 
@@ -35,6 +37,13 @@ inline KeyframeTrajectory trajectory(const std::vector<Pose>& poses) {
     KeyframeTrajectory result;
     for (const Pose& p : poses) result.keyframes.push_back({static_cast<int>(result.keyframes.size()), 0, p});
     return result;
+}
+
+/// Gives a keyframe's depth image to a builder; what OctomapBuilder::add() returns.
+inline bool add_keyframe(octomap::OctomapBuilder& builder, int id, const DepthImage& depth,
+                         const CameraInfo& camera, const Pose& world_from_camera) {
+    return builder.add(id, std::make_shared<octomap::StoredScan>(depth, camera), world_from_camera,
+                       {id, Pose::Identity()});
 }
 
 }  // namespace planemap::test

@@ -9,6 +9,8 @@
 namespace planemap::odometry {
 namespace {
 
+const CornerOptions kCorners = corner_options({});
+
 PlanarRegion wall_region(double distance_m) {
     PlanarRegion region;
     region.plane = {{0, 0, -1}, distance_m};
@@ -36,11 +38,11 @@ TEST(SoundDepth, IsTheDepthAwayFromEdgesOnly) {
 TEST(SelectCorners, SpreadsOverCellsWithDepth) {
     const CameraInfo camera = room_camera();
     const RenderedFrame frame = render_room(camera, Pose::Identity());
-    const auto corners = select_corners(frame.gray, frame.depth, camera, {});
+    const auto corners = select_corners(frame.gray, frame.depth, camera, kCorners);
     EXPECT_GT(corners.size(), 40u);
     EXPECT_LE(corners.size(), 300u);
-    EXPECT_TRUE(select_corners(frame.gray, DepthImage(320, 240, 0), camera, {}).empty());
-    EXPECT_TRUE(select_corners(GrayImage(320, 240, 0), frame.depth, camera, {}).empty());
+    EXPECT_TRUE(select_corners(frame.gray, DepthImage(320, 240, 0), camera, kCorners).empty());
+    EXPECT_TRUE(select_corners(GrayImage(320, 240, 0), frame.depth, camera, kCorners).empty());
 }
 
 TEST(Regularised, StaysOnItsPixelAndLiesOnThePlane) {

@@ -8,6 +8,8 @@
 namespace planemap::odometry {
 namespace {
 
+const MotionRansacOptions kOptions = motion_ransac_options({});
+
 const PinholeCamera kCamera{640, 480, 525, 525, 320, 240};
 
 Pose some_motion() {
@@ -38,25 +40,26 @@ std::vector<PointTerm> seen_points(const Pose& motion, int count, double outlier
 }
 
 TEST(Ransac, RecoversAMotionFromHalfOutliers) {
-    const std::optional<Pose> pose = ransac_motion(kCamera, seen_points(some_motion(), 100, 0.5), {});
+    const std::optional<Pose> pose = ransac_motion(kCamera, seen_points(some_motion(), 100, 0.5), kOptions);
     ASSERT_TRUE(pose);
     EXPECT_LT(twist_from_pose(*pose * some_motion().inverse()).norm(), 1e-3);
 }
 
 TEST(Ransac, SameSeedSameMotion) {
     const std::vector<PointTerm> terms = seen_points(some_motion(), 100, 0.5);
-    EXPECT_TRUE(ransac_motion(kCamera, terms, {})->isApprox(*ransac_motion(kCamera, terms, {}), 0));
+    EXPECT_TRUE(
+        ransac_motion(kCamera, terms, kOptions)->isApprox(*ransac_motion(kCamera, terms, kOptions), 0));
 }
 
 TEST(Ransac, NothingFromNoise) {
-    EXPECT_FALSE(ransac_motion(kCamera, seen_points(some_motion(), 60, 1), {}));
+    EXPECT_FALSE(ransac_motion(kCamera, seen_points(some_motion(), 60, 1), kOptions));
 }
 
 TEST(Ransac, NothingFromTooFewOrDegeneratePoints) {
-    EXPECT_FALSE(ransac_motion(kCamera, {}, {}));
+    EXPECT_FALSE(ransac_motion(kCamera, {}, kOptions));
     const std::vector<PointTerm> terms = seen_points(some_motion(), 20, 0);
-    EXPECT_FALSE(ransac_motion(kCamera, std::span(terms).first(2), {}));
-    EXPECT_FALSE(ransac_motion(kCamera, std::vector<PointTerm>(30, terms[0]), {}));
+    EXPECT_FALSE(ransac_motion(kCamera, std::span(terms).first(2), kOptions));
+    EXPECT_FALSE(ransac_motion(kCamera, std::vector<PointTerm>(30, terms[0]), kOptions));
     std::vector<PointTerm> line;
     for (int i = 0; i < 30; ++i) {
         PointTerm term;
@@ -65,13 +68,13 @@ TEST(Ransac, NothingFromTooFewOrDegeneratePoints) {
         term.inverse_depth = 0.5;
         line.push_back(term);
     }
-    EXPECT_FALSE(ransac_motion(kCamera, line, {}));
+    EXPECT_FALSE(ransac_motion(kCamera, line, kOptions));
 }
 
 TEST(Ransac, NothingWithoutDepth) {
     std::vector<PointTerm> terms = seen_points(some_motion(), 50, 0);
     for (PointTerm& term : terms) term.inverse_depth = 0;
-    EXPECT_FALSE(ransac_motion(kCamera, terms, {}));
+    EXPECT_FALSE(ransac_motion(kCamera, terms, kOptions));
 }
 
 }  // namespace

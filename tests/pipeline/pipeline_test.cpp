@@ -11,12 +11,19 @@
 #include <optional>
 #include <random>
 
+#include "core/geometry/plane.hpp"
 #include "data_folder.hpp"
 #include "decimated_sequence.hpp"
 #include "evaluate/evaluation.hpp"
+#include "map/observation.hpp"
+#include "messages/channels.hpp"
+#include "messages/convert.hpp"
+#include "messages/decode.hpp"
 #include "run/input.hpp"
 #include "segmentation/outline_reach.hpp"
 #include "segmentation/segmentation.hpp"
+#include "sensor/sensor_shell.hpp"
+#include "simulator/simulated_source.hpp"
 #include "temporary_folder.hpp"
 
 namespace planemap::pipeline {
@@ -149,6 +156,84 @@ TEST(WhyLost, DepthIsBlamedOnlyForItsOwnFaults) {
     const auto anything = [&](int, int) { return static_cast<std::uint16_t>(500 + random() % 6000); };
     EXPECT_NE(why_none_tracked(folder / "noise", camera, anything).find("nothing to follow"),
               std::string::npos);
+}
+
+/// What a walk through a simulated room gave, with the camera's poses known.
+struct WeighedMap {
+    PlaneMap map;
+    std::vector<Keyframe> keyframes;
+
+    /// What the map counts a region for, the mean over those of the first keyframe.
+    double mean_weight() const {
+        const planemap::map::ObservationModel model;
+        const planemap::map::StoredKeyframe first = planemap::map::stored(0, keyframes.at(0).regions);
+        double sum = 0;
+        for (const auto& region : first.regions) sum += model.weight(region, keyframes[0].noise);
+        return sum / static_cast<double>(first.regions.size());
+    }
+};
+
+/// A simulated camera that is said to have so many times the noise that it has.
+class SaidNoise : public FrameSource {
+  public:
+    SaidNoise(const std::string& name, double factor)
+        : source_(simulator::parse_simulator_name(name)), camera_(source_.camera()) {
+        camera_.noise.base_m *= factor;
+        camera_.noise.quadratic_per_m *= factor;
+    }
+    const CameraInfo& camera() const override { return camera_; }
+    std::optional<std::size_t> size() const override { return source_.size(); }
+    ReadResult next(SensorFrame& frame) override { return source_.next(frame); }
+
+  private:
+    simulator::SimulatedSource source_;
+    CameraInfo camera_;
+};
+
+/// The same frames, by a camera that is said to have this many times the noise.
+WeighedMap weighed_map(double noise) {
+    const std::string name = "sim:office?frames=30&rate=10&width=320&height=240";
+    const simulator::SimulatedSource source(simulator::parse_simulator_name(name));
+    messages::Bus bus("memq://");
+    PipelineOptions options;
+    options.with_octomap = false;
+    options.poses.emplace();
+    for (std::size_t i = 0; i < 30; ++i)
+        options.poses->push_back({source.utime(i), source.world_from_color(source.utime(i))});
+    Pipeline pipeline(bus, options);
+    WeighedMap result;
+    bus.subscribe(messages::channels::kKeyframe, [&](const messages::RawMessage& message) {
+        result.keyframes.push_back(messages::from_message(messages::decode<keyframe_t>(message.bytes)));
+    });
+    sensor::SensorShellOptions pace;
+    pace.speed = 0;
+    sensor::SensorShell sensor(bus, std::make_unique<SaidNoise>(name, noise), pace);
+    while (sensor.poll() >= 0) pipeline.settle();
+    pipeline.finish();
+    result.map = pipeline.map().mapper().map();
+    return result;
+}
+
+/// The noise that a camera is said to have goes from its description to what the map counts its regions for.
+TEST(SensorNoise, TwiceAsMuchChangesTheMapsWeights) {
+    const WeighedMap once = weighed_map(1), twice = weighed_map(2);
+    ASSERT_FALSE(once.keyframes.empty());
+    ASSERT_FALSE(twice.keyframes.empty());
+    ASSERT_FALSE(once.map.planes.empty());
+    ASSERT_FALSE(twice.map.planes.empty());
+    EXPECT_DOUBLE_EQ(twice.keyframes[0].noise.sigma(3), 2 * once.keyframes[0].noise.sigma(3));
+    EXPECT_LT(twice.mean_weight(), 0.95 * once.mean_weight());
+    EXPECT_GT(twice.mean_weight(), 0.25 * once.mean_weight()) << "poses err, too, and as before";
+    // Other weights, other planes: the floor of both is one, and not the same to the last digit.
+    const auto largest = [](const PlaneMap& map) {
+        return std::max_element(map.planes.begin(), map.planes.end(),
+                                [](const MapPlane& a, const MapPlane& b) { return a.area < b.area; })
+            ->plane();
+    };
+    const Plane a = largest(once.map), b = largest(twice.map);
+    EXPECT_LT(angle_between(a.normal, b.normal), 0.02);
+    EXPECT_NEAR(a.d, b.d, 0.02);
+    EXPECT_NE(a.d, b.d);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "segmentation/segmentation_shell.hpp"
 
+#include "messages/told_status.hpp"
 #include "shell_fixture.hpp"
 
 namespace planemap::segmentation {
@@ -43,7 +44,7 @@ TEST_F(SegmentationShellTest, WithoutACameraFramesAreDroppedAndCounted) {
     SegmentationShell shell(bus_, std::make_shared<messages::FrameDecoder>(bus_), {});
     bus_.publish(messages::channels::kFrame, frame(100));
     bus_.drain();
-    EXPECT_EQ(shell.status().dropped_count(), 1);
+    EXPECT_EQ(test::told(shell.status()).dropped, 1);
 }
 
 }  // namespace

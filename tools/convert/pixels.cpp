@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "core/yuv.hpp"
 #include "messages/kinect_frame.hpp"
 #include "sensor/jpeg.hpp"
 #include "sensor/png.hpp"
@@ -81,16 +82,6 @@ bool is_yuv(const std::string& encoding) {
     return encoding == "yuv422" || encoding == "yuyv" || encoding == "yuv422_yuy2";
 }
 
-std::uint8_t byte_of(double value) {
-    return static_cast<std::uint8_t>(std::clamp(std::lround(value), 0L, 255L));
-}
-
-/// ITU-R BT.601.
-Rgb rgb_of(double y, double u, double v) {
-    return {byte_of(y + 1.402 * (v - 128)), byte_of(y - 0.344136 * (u - 128) - 0.714136 * (v - 128)),
-            byte_of(y + 1.772 * (u - 128))};
-}
-
 RgbImage from_yuv(const RawImage& image) {
     require_bytes(image, 2);
     if (image.width % 2 != 0) throw std::runtime_error("a 4:2:2 image of an odd width");
@@ -100,7 +91,7 @@ RgbImage from_yuv(const RawImage& image) {
         for (int u = 0; u < image.width; ++u) {
             const std::uint8_t* pair = row_of(image, v) + 4 * static_cast<std::ptrdiff_t>(u / 2);
             out(u, v) =
-                rgb_of(pair[luma + 2 * static_cast<std::size_t>(u % 2)], pair[1 - luma], pair[3 - luma]);
+                rgb_of_yuv(pair[luma + 2 * static_cast<std::size_t>(u % 2)], pair[1 - luma], pair[3 - luma]);
         }
     }
     return out;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/stamp.hpp"
+#include "core/time_step.hpp"
 #include "messages/decode.hpp"
 #include "messages/log.hpp"
 #include "messages/log_contents.hpp"
@@ -49,11 +50,9 @@ struct Channel {
         const double seconds = static_cast<double>(step_between(first, last)) * 1e-6;
         if (seconds > 0) out.rate_hz = static_cast<double>(events - 1) / seconds;
         if (steps.empty()) return out;
-        const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-        std::nth_element(steps.begin(), middle, steps.end());
-        const std::int64_t limit = 3 * *middle;
+        const std::int64_t median = median_step(steps), limit = 3 * median;
         out.gaps =
-            *middle == 0 ? 0 : std::count_if(steps.begin(), steps.end(), [&](auto s) { return s > limit; });
+            median == 0 ? 0 : std::count_if(steps.begin(), steps.end(), [&](auto s) { return s > limit; });
         out.longest_step_s = static_cast<double>(*std::max_element(steps.begin(), steps.end())) * 1e-6;
         return out;
     }

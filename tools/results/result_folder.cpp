@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "results/result_folder.hpp"
 
-#include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -17,6 +16,7 @@
 
 #include "core/files.hpp"
 #include "core/stamp.hpp"
+#include "core/sync_folder.hpp"
 
 namespace planemap {
 
@@ -47,14 +47,6 @@ void remove_or_throw(const fs::path& path) {
     std::error_code error;
     fs::remove_all(path, error);
     if (error) fail(path, "cannot be removed", error.message());
-}
-
-/// Waits until the folder's entries are on the disk. Where that cannot be had, nothing is lost by it.
-void sync_folder(const fs::path& folder) {
-    const int handle = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (handle < 0) return;
-    ::fsync(handle);
-    ::close(handle);
 }
 
 std::vector<fs::path> entries_of(const fs::path& folder) {
@@ -140,6 +132,9 @@ ResultFolder::ResultFolder(fs::path folder, std::vector<std::string> names, std:
                                  ": another run is writing its results there (its lock is " +
                                  lock_file().filename().string() + "): wait for it, or give another folder");
     }
+    if (!lock_.unsupported().empty())
+        notes_.push_back(folder_.string() + ": its file system knows no locks (" + lock_.unsupported() +
+                         "): nothing keeps a run on another computer out of it");
     try {
         restore();
         remove_scraps();
@@ -259,7 +254,7 @@ void ResultFolder::move_into_place() {
         }
     }
     remove_or_throw(moving());
-    sync_folder(folder_);
+    sync_folder(folder_);  // where that cannot be had, nothing is lost by it
 }
 
 std::string ResultFolder::aside_stem() const {

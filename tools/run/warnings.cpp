@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/time_step.hpp"
 #include "odometry/odometry_shell.hpp"
 #include "run/report_text.hpp"
 #include "run/worth.hpp"
@@ -26,10 +27,7 @@ double median_step_s(const std::vector<OdometryEstimate>& estimates) {
     std::vector<std::int64_t> steps;
     for (std::size_t i = 1; i < estimates.size(); ++i)
         steps.push_back(estimates[i].utime - estimates[i - 1].utime);
-    if (steps.empty()) return 0;
-    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-    std::nth_element(steps.begin(), middle, steps.end());
-    return 1e-6 * static_cast<double>(*middle);
+    return steps.empty() ? 0 : 1e-6 * static_cast<double>(median_step(steps));
 }
 
 /// Where depth is off by more than it scatters, and than that is uncertain, the map is as bent; empty if not.
