@@ -158,7 +158,7 @@ class BentProblem {
     /// What is left of the information on the field when poses and planes are not known either.
     std::optional<FieldMatrix> information() {
         ceres::Problem::EvaluateOptions options;
-        for (double* block : blocks()) options.parameter_blocks.push_back(block);
+        options.parameter_blocks = problem_.moving();
         options.parameter_blocks.push_back(field_.data());
         ceres::CRSMatrix jacobian;
         if (!problem_.ceres().Evaluate(options, nullptr, nullptr, nullptr, &jacobian)) return std::nullopt;
@@ -186,16 +186,6 @@ class BentProblem {
     }
 
   private:
-    /// All that moves, but the field.
-    std::vector<double*> blocks() {
-        std::vector<double*> all, moving;
-        problem_.ceres().GetParameterBlocks(&all);
-        for (double* block : all)
-            if (block != field_.data() && !problem_.ceres().IsParameterBlockConstant(block))
-                moving.push_back(block);
-        return moving;
-    }
-
     Field field_ = Field::Zero();
     PoseProblem problem_;
     std::vector<ceres::ResidualBlockId> sightings_;

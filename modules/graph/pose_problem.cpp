@@ -121,6 +121,17 @@ ceres::Solver::Summary PoseProblem::solve(const OptimisationOptions& options) {
     return summary;
 }
 
+std::vector<double*> PoseProblem::moving() {
+    std::vector<double*> changes;
+    const auto take = [&](double* change) {
+        if (problem_.HasParameterBlock(change) && !problem_.IsParameterBlockConstant(change))
+            changes.push_back(change);
+    };
+    for (Node& node : nodes_) take(node.change.data());
+    for (PlaneNode& plane : planes_) take(plane.change.data());
+    return changes;
+}
+
 Pose PoseProblem::pose(std::size_t number) {
     nodes_[number].update();  // the last step tried may not be the one taken
     return nodes_[number].pose();

@@ -79,10 +79,7 @@ OptimisationTask walk(const CameraInfo& camera, const DepthCorrection& field, in
     std::normal_distribution<double> noise;
     OptimisationTask task;
     std::vector<Pose> truth;
-    LandmarkOptions large = landmark_options({});  // that fix rotations well
-    large.min_extent_m = 0.25;
-    large.sigma_m = 0.01;
-    Landmarks landmarks(large);
+    Landmarks landmarks(landmark_options({}));
     for (int i = 0; i < steps; ++i) {
         const double turn = 2 * kPi * 2 * i / steps, round = 2 * kPi * i / steps;
         Eigen::Matrix3d upright;  // optical axes in the world, looking along x

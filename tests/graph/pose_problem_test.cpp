@@ -67,6 +67,8 @@ TEST(PoseProblem, ASightingDrawsItsNodeToThePlane) {
     EXPECT_TRUE(problem.solve(with_kernel(1)).IsSolutionUsable());
     EXPECT_NEAR(problem.pose(1).translation().z(), 0, 1e-3);
     EXPECT_NEAR(problem.plane(0).d, 1, 1e-3);
+    const std::vector<double*> moving{problem.node(1).change.data(), problem.plane_node(0).change.data()};
+    EXPECT_EQ(problem.moving(), moving) << "nodes, then planes, and none that is fixed";
 }
 
 TEST(PoseProblem, ManyLoopClosuresAreSolvedToTheSamePoses) {

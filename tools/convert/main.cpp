@@ -3,6 +3,7 @@
 #include "convert/conversion.hpp"
 #include "messages/camera_flag.hpp"
 #include "messages/process.hpp"
+#include "sensor/source.hpp"
 
 int main(int argc, char** argv) {
     planemap::messages::Flags flags(
