@@ -16,6 +16,7 @@
 #include "decimated_sequence.hpp"
 #include "evaluate/evaluation.hpp"
 #include "map/observation.hpp"
+#include "map/rules.hpp"
 #include "messages/channels.hpp"
 #include "messages/convert.hpp"
 #include "messages/decode.hpp"
@@ -165,7 +166,7 @@ struct WeighedMap {
 
     /// What the map counts a region for, the mean over those of the first keyframe.
     double mean_weight() const {
-        const planemap::map::ObservationModel model;
+        const planemap::map::ObservationModel model = planemap::map::observation_model({});
         const planemap::map::StoredKeyframe first = planemap::map::stored(0, keyframes.at(0).regions);
         double sum = 0;
         for (const auto& region : first.regions) sum += model.weight(region, keyframes[0].noise);

@@ -28,7 +28,7 @@ int main(int argc, char** argv) {
         "What to write; auto: a log or a TUM folder, by the output's name; fakenect: what libfreenect's "
         "fakenect plays in place of a Kinect v1");
     camera.add_to(flags, "camera.json, instead of what INPUT says of its camera");
-    flags.add("channel", options.channel, sensor::kChannelHelp);
+    flags.add("channel", options.channel, planemap::sensor::kChannelHelp);
     flags.add("depth-topic", options.depth_topic, "Of a bag; default: chosen by type and encoding");
     flags.add("color-topic", options.color_topic, "Of a bag; default: chosen by type and encoding");
     flags.add("color-gap", options.max_color_gap_s,
