@@ -14,14 +14,10 @@ OptionList options_of(OctomapOptions& options) {
     list.add("max_keyframes", options.max_keyframes, at_least(1),
              "Keyframes whose depth is kept for rebuilding (about 150 KB each). Beyond it the oldest is "
              "frozen at its pose and its depth dropped");
-    list.add(
-        "moved_m", options.moved_m, {0, 10},
-        "A keyframe that moves by no more, nor turns by more than the limit in degrees, is not entered anew",
-        kExpert);
-    list.add(
-        "moved_deg", options.moved_deg, {0, 180},
-        "A keyframe that turns by no more, nor moves by more than the limit in metres, is not entered anew",
-        kExpert);
+    list.add("moved_m", options.moved_m, {0, 10},
+             "A keyframe that moves by no more, nor turns beyond its limit, is not entered anew", kExpert);
+    list.add("moved_deg", options.moved_deg, {0, 180},
+             "A keyframe that turns by no more, nor moves beyond its limit, is not entered anew", kExpert);
     return list;
 }
 

@@ -14,7 +14,7 @@ OptionList options_of(CellOptions& options) {
              kExpert);
     list.add("grow_sigmas", options.grow_sigmas, greater_than(0),
              "Largest mean distance of a cell to its region's plane, in sigmas of the depth noise there; or "
-             "the limit in metres, if that is more",
+             "the fixed limit, if that is more",
              kExpert);
     list.add(
         "merge_m", options.merge_m, greater_than(0),
@@ -24,7 +24,7 @@ OptionList options_of(CellOptions& options) {
     list.add(
         "merge_sigmas", options.merge_sigmas, greater_than(0),
         "By how much (RMS) two regions to be merged may leave their common plane, in sigmas of the depth "
-        "noise there; or the limit in metres, if that is more",
+        "noise there; or the fixed limit, if that is more",
         kExpert);
     list.add("merge_angle_deg", options.merge_angle_deg, between(0, 90),
              "Largest angle between two regions to be merged");
@@ -36,7 +36,7 @@ OptionList options_of(CellOptions& options) {
         "is more");
     list.add("thickness_sigmas", options.thickness_sigmas, greater_than(0),
              "Largest distance of a pixel to its region's plane, in sigmas of the depth noise there; or "
-             "the limit in metres, if that is more",
+             "the fixed limit, if that is more",
              kExpert);
     return list;
 }
