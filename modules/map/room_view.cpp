@@ -13,7 +13,7 @@ namespace planemap::map {
 
 namespace {
 
-constexpr double kEnd_m =
+constexpr double kLineEnd_m =
     0.4;  // level planes this near to an end of the room are that end: steps, low ceilings
 constexpr double kFew = 0.05;         // weight that makes a surplus count half
 constexpr double kHanging_m = 0.3;    // what is seen under a plane reaches this much further down,
@@ -136,7 +136,7 @@ RoomView::Reading RoomView::read(const Eigen::Vector3d& u, double sin2_tolerance
         if (square == 0) continue;
         const bool is_level = square > 0, faces_up = plane.normal.dot(u) > 0;
         const double height = heights[i].middle();
-        const bool is_floor = height<ends.low + kEnd_m, is_ceiling = height> ends.high - kEnd_m;
+        const bool is_floor = height<ends.low + kLineEnd_m, is_ceiling = height> ends.high - kLineEnd_m;
         if (is_level && !(faces_up ? is_floor : is_ceiling)) (faces_up ? up : down) += plane.weight;
         if (!is_level && hangs(plane, planes_, u)) reading.hanging += plane.weight;
         if (is_level ? is_floor || is_ceiling : heights[i].length() > kSpan * ends.height()) continue;

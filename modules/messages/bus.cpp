@@ -103,7 +103,6 @@ void Bus::dispatch(const Handler& handler, const std::string& channel, const lcm
 }
 
 void Bus::report(std::string_view channel, const char* reason) {
-    ++handler_errors_;
     if (reported_ == connection_.received() && reported_reason_ == reason) return;
     reported_ = connection_.received();
     reported_reason_ = reason;
@@ -111,11 +110,7 @@ void Bus::report(std::string_view channel, const char* reason) {
 }
 
 std::string Bus::trouble() const {
-    std::string text = connection_.trouble();
-    if (handler_errors_ > 0)
-        text += (text.empty() ? "" : "; ") + std::string("a message could not be used, times: ") +
-                std::to_string(handler_errors_) + " (the log says why)";
-    return text;
+    return connection_.trouble();
 }
 
 void Bus::drain() {

@@ -36,12 +36,6 @@ std::optional<std::int64_t> elapsed_us(const Message& from, const Message& to) {
            std::clamp(*from.utime, -kFarthestUtime, kFarthestUtime);
 }
 
-/// In time, or by number where there is no time.
-bool is_after(const Message& from, const Message& to) {
-    if (const auto elapsed = elapsed_us(from, to)) return *elapsed > 0;
-    return seq_steps(from, to).value_or(0) > 0;
-}
-
 /// Whether both say the same id: then it is one sender, whatever its numbers and stamps do.
 bool known_as_one(const Message& a, const Message& b) {
     return a.sender && a.sender == b.sender;
@@ -54,6 +48,13 @@ constexpr std::int64_t kLongestStep_us = std::int64_t{3600} * 1000000;
 
 std::uint32_t checksum_of(std::span<const std::uint8_t> bytes) {
     return libdeflate_crc32(0, bytes.data(), bytes.size());
+}
+
+/// In time, or by number where that says the order or there is no time.
+bool SenderGuard::is_after(const Message& from, const Message& to) const {
+    const auto elapsed = elapsed_us(from, to), steps = seq_steps(from, to);
+    if (elapsed && (order_ == Order::kTime || !steps)) return *elapsed > 0;
+    return steps.value_or(0) > 0;
 }
 
 /// Whether the message is of a process that goes on with the state of the one that is followed, which is no
@@ -82,7 +83,8 @@ std::int64_t SenderGuard::step_us() const {
 bool SenderGuard::goes_on(const Stream& stream, const Message& message) const {
     const auto steps = seq_steps(stream.last, message);
     const auto elapsed = elapsed_us(stream.last, message);
-    if (steps && *steps > 0 && elapsed.value_or(0) >= 0 && (*steps <= kMissed || message.sender)) return true;
+    const bool is_ordered = order_ == Order::kNumber || elapsed.value_or(0) >= 0;
+    if (steps && *steps > 0 && is_ordered && (*steps <= kMissed || message.sender)) return true;
     if (steps && (*steps < -kReordered || *steps > kMissed)) return false;
     if (!elapsed) return true;
     if (*elapsed > 0 && (n_steps_ == 0 || (message.sender && !steps))) return true;
@@ -144,7 +146,7 @@ void SenderGuard::say_back(const Message& message) {
 }
 
 void SenderGuard::follow(const Message& message) {
-    if (const auto elapsed = elapsed_us(followed_->last, message))
+    if (const auto elapsed = elapsed_us(followed_->last, message); elapsed && *elapsed > 0)
         steps_us_[n_steps_++ % steps_us_.size()] = *elapsed;
     const auto kind = message.kind ? message.kind : followed_->last.kind;
     followed_->last = message;

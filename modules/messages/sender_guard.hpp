@@ -43,7 +43,14 @@ class SenderGuard {
         kForeign,   ///< of another sender
     };
 
-    explicit SenderGuard(std::string channel) : channel_(std::move(channel)) {}
+    /// What says which message of a sender is the later one.
+    enum class Order {
+        kTime,    ///< its stamp, where it has one
+        kNumber,  ///< its number: a module of ours, whose time goes back where its input's does
+    };
+
+    explicit SenderGuard(std::string channel, Order order = Order::kTime)
+        : channel_(std::move(channel)), order_(order) {}
 
     Verdict judge(const Message& message);
     /// How often another stream became the one that is followed.
@@ -61,6 +68,7 @@ class SenderGuard {
         bool interleaved = false;                 ///< the one followed went on after this one had begun
     };
 
+    bool is_after(const Message& from, const Message& to) const;
     bool is_started_again(const Message& message) const;
     bool same_sender(const Message& a, const Message& b) const;
     bool goes_on(const Stream& stream, const Message& message) const;
@@ -74,6 +82,7 @@ class SenderGuard {
     Verdict judge_aside(const Stream& stream, bool foreign);
 
     std::string channel_, news_;
+    Order order_;
     std::optional<Stream> followed_;
     std::vector<Stream> others_;              ///< a few, the one heard last at the end
     std::array<std::int64_t, 8> steps_us_{};  ///< of time between the last messages followed

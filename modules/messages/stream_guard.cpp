@@ -21,7 +21,7 @@ SenderGuard::Message told(std::int64_t session, std::int32_t seq, std::optional<
 
 void StreamGuard::resume(std::int64_t session, std::int32_t seq, std::optional<std::int64_t> utime,
                          std::span<const std::uint8_t> bytes) {
-    guard_ = SenderGuard(channel_);
+    guard_ = SenderGuard(channel_, SenderGuard::Order::kNumber);
     guard_.judge(told(session, seq, utime, bytes));
 }
 

@@ -11,15 +11,15 @@
 
 namespace planemap::messages {
 
-/// A channel of results that a module lives on: one sender's are admitted, what another sender or an earlier
-/// run says is counted and named (see SenderGuard).
+/// A channel of results of our own modules, which number them, that a module lives on: one sender's are
+/// admitted, what another sender or an earlier run says is counted and named (see SenderGuard).
 class StreamGuard {
   public:
     /// What is not admitted counts in `status` as lost `things`, plural; if they are the module's main
     /// stream, those of the sender count as received. Beside it each message takes the place of those before.
     StreamGuard(const std::string& channel, std::string things, ModuleStatus& status, bool main_stream = true)
         : channel_(channel),
-          guard_(channel),
+          guard_(channel, SenderGuard::Order::kNumber),
           things_(std::move(things)),
           status_(status),
           main_stream_(main_stream) {}

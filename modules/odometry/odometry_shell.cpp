@@ -59,7 +59,8 @@ OdometryShell::OdometryShell(messages::Bus& bus, std::shared_ptr<messages::Frame
         pairing_.add(messages::from_message(messages::decode<planar_regions_t>(m.bytes)));
     }),
                    8);
-    if (!options.motion.channel.empty()) hear_priors(options.motion.channel);
+    motion_channel_ = options.motion.channel;
+    if (!motion_channel_.empty()) hear_priors(motion_channel_);
 }
 
 void OdometryShell::hear_priors(const std::string& channel) {
@@ -72,6 +73,7 @@ void OdometryShell::hear_priors(const std::string& channel) {
 
 void OdometryShell::on_prior(const messages::RawMessage& message) {
     const auto pose = messages::decode<bot_core::pose_t>(message.bytes);
+    heard_prior_ = true;
     bot_core::rigid_transform_t body;
     body.utime = messages::checked_utime(pose.utime, "pose.utime");
     std::copy(pose.pos, pose.pos + 3, body.trans);
@@ -220,12 +222,16 @@ void OdometryShell::publish_body(OdometryEstimate estimate, const CameraInfo& ca
 }
 
 void OdometryShell::publish_keyframe(const Keyframe& keyframe) {
+    loose_.see(keyframe);
     frames_.add(keyframe);
     newest_id_ = std::max(newest_id_, keyframe.id);
     outbox_.publish(keyframe);
 }
 
 void OdometryShell::finish() {
+    if (!motion_channel_.empty() && !heard_prior_)
+        status_.remark("motion channel",
+                       "no bot_core.pose_t came on " + motion_channel_ + ", the motion channel");
     pairing_.finish();
     if (const std::optional<Keyframe> last = odometry_.finish()) publish_keyframe(*last);
 }

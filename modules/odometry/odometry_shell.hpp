@@ -11,6 +11,7 @@
 #include "odometry/body_frame.hpp"
 #include "odometry/keyframe_outbox.hpp"
 #include "odometry/looks.hpp"
+#include "odometry/loose_keyframes.hpp"
 #include "odometry/odom_frames.hpp"
 #include "odometry/odometry.hpp"
 #include "odometry/region_pairing.hpp"
@@ -82,6 +83,9 @@ class OdometryShell : public messages::Shell {
     BodyFrame body_;
     OdomFrames frames_;
     Looks looks_;
+    LooseKeyframes loose_{status_};
+    std::string motion_channel_;  ///< empty: none
+    bool heard_prior_ = false;
     int newest_id_ = -1;      ///< of the keyframes so far, ours and those of before
     bool is_silent_ = false;  ///< POSE_BODY is, since how the present odom frame lies is not known
     std::optional<std::int64_t> frames_told_utime_;  ///< frame with which the body's frames were told last

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/geometry/angle.hpp"
+#include "core/geometry/covariance.hpp"
 #include "core/geometry/rigid_fit.hpp"
 #include "core/geometry/same_plane.hpp"
 #include "places/comparison.hpp"
@@ -265,11 +266,6 @@ int occupied_cells(const KeyframeView& view, const std::vector<Eigen::Vector3d>&
         cells.set(4 * cell(at.y()) + cell(at.x()));
     }
     return static_cast<int>(cells.count());
-}
-
-double largest_sigma(const Eigen::Matrix3d& covariance) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance, Eigen::EigenvaluesOnly);
-    return std::sqrt(std::max(0.0, solver.eigenvalues()[2]));
 }
 
 bool spread_suffices(const KeyframeView& a, const KeyframeView& b, const std::vector<PointPair>& inliers,

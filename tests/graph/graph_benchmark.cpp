@@ -138,7 +138,7 @@ void time_graph(int count) {
 struct Problem {
     std::vector<Pose> truth, poses;
     std::vector<PoseEdge> edges;
-    Landmarks landmarks{{}};
+    Landmarks landmarks{landmark_options({})};
 
     void add_edge(int from, int to, double sigma_m, double sigma_rad, bool robust, Random& random) {
         Twist error;

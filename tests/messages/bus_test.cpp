@@ -58,7 +58,7 @@ TEST(Bus, AHandlerThatThrowsIsCountedAndTheNextMessagesArrive) {
     }
     bus.drain();
     EXPECT_EQ(good, 3);
-    EXPECT_THAT(bus.trouble(), testing::HasSubstr("a message could not be used, times: 3 ("));
+    EXPECT_EQ(bus.complaints().count(), 3);
 }
 
 TEST(Bus, AMessageThatSeveralHandlersDropIsOneComplaint) {
@@ -67,7 +67,6 @@ TEST(Bus, AMessageThatSeveralHandlersDropIsOneComplaint) {
         bus.subscribe("ODO", [](const RawMessage& m) { decode<odometry_t>(m.bytes); });
     for (int i = 0; i < 5; ++i) bus.publish_bytes("ODO", std::vector<std::uint8_t>(40, 0xff));
     bus.drain();
-    EXPECT_THAT(bus.trouble(), testing::HasSubstr("a message could not be used, times: 15 ("));
     EXPECT_EQ(bus.complaints().count(), 5);
     ASSERT_EQ(bus.complaints().totals().size(), 1u);
     EXPECT_NE(bus.complaints().totals()[0].find("(5 times)"), std::string::npos);

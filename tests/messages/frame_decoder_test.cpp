@@ -167,7 +167,7 @@ TEST_F(Subscribed, ShareAFrameAndTheTroubleOfOneIsNotTheNexts) {
     EXPECT_EQ(status_.decode_error_count(), 0);
     EXPECT_EQ(test::told(second).received, 0) << "frames are not its main stream";
     EXPECT_EQ(second.decode_error_count(), 1);
-    EXPECT_THAT(bus_.trouble(), testing::HasSubstr("a message could not be used, times: 1 ("));
+    EXPECT_EQ(bus_.complaints().count(), 1);
 }
 
 TEST_F(Subscribed, LateAndRepeatedFramesAndStampsThatGoBackAreCountedApart) {
@@ -190,7 +190,7 @@ TEST_F(Subscribed, StampsAtTheEndsOfTheirRangeAreErrors) {
     publish(other_camera_);  // another description looks at stamps, too
     publish({INT64_MIN, 4});
     EXPECT_EQ(status_.decode_error_count(), 10);
-    EXPECT_THAT(bus_.trouble(), testing::HasSubstr("a message could not be used, times: 10 ("));
+    EXPECT_EQ(bus_.complaints().count(), 10);
     publish({1033333, 5});
     EXPECT_EQ(frames_.size(), 2u) << "the stream goes on";
 

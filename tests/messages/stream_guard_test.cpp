@@ -49,6 +49,19 @@ TEST_F(Admission, WhatAnotherSenderSaysIsCountedAndNamed) {
     EXPECT_EQ(test::told(status_).dropped, 10);
 }
 
+TEST_F(Admission, NumbersOrderASendersMessagesWhereItsTimeGoesBack) {
+    // An odometry whose input began again: each of its keyframes counts, the first ones too.
+    for (const std::int64_t session : {0, 7}) {
+        StreamGuard guard("PLANEMAP_KEYFRAME", "keyframes", status_);
+        for (int i = 0; i < 20; ++i) {
+            const std::vector<std::uint8_t> bytes{static_cast<std::uint8_t>(i)};
+            EXPECT_TRUE(guard.admits(session, i, 1000000 + 500000 * std::int64_t{i % 10}, bytes)) << i;
+        }
+    }
+    EXPECT_TRUE(status_.losses().empty());
+    EXPECT_EQ(test::told(status_).dropped, 0);
+}
+
 TEST_F(Admission, SessionsTellTwoSendersOfTheSameNumbersAndTimesApart) {
     for (int i = 0; i < 10; ++i) {
         const std::vector<std::uint8_t> bytes{static_cast<std::uint8_t>(i)};

@@ -166,8 +166,8 @@ void publish(messages::Bus& bus, const Pending& next, const View& view, HandlerT
 
 /// Feeds keyframes at their rate; of those that come while the shell is busy, eight wait. Returns how many
 /// were dropped.
-int feed(messages::Bus& bus, OctomapShell& shell, int keyframes, double rate_hz, HandlerTimes& times) {
-    const std::vector<View> views = make_views();
+int feed(messages::Bus& bus, OctomapShell& shell, const std::vector<View>& views, int keyframes,
+         double rate_hz, HandlerTimes& times) {
     const auto view_of = [&](int id) -> const View& {
         return views[static_cast<std::size_t>(id) % views.size()];
     };
@@ -217,16 +217,17 @@ int run(int keyframes, double rate_hz, bool background) {
     bus.drain();
 
     HandlerTimes times;
+    const std::vector<View> views = make_views();
     const Clock::time_point start = Clock::now();
-    const int overflow = feed(bus, *shell, keyframes, rate_hz, times);
+    const int overflow = feed(bus, *shell, views, keyframes, rate_hz, times);
     const double fed_s = 1e-3 * ms(Clock::now() - start);
     const Clock::time_point stop = Clock::now();
     const std::clock_t stop_cpu = std::clock();
     shell->finish();
     bus.drain();
     const double finished_ms = ms(Clock::now() - stop);
-    const std::int64_t dropped = test::told(shell->status()).dropped + overflow;
     const std::string line = shell->status().line();
+    const std::int64_t dropped = test::told(shell->status()).dropped + overflow;
     shell.reset();
     const double stop_ms = ms(Clock::now() - stop);
     const double stop_cpu_ms = 1e3 * static_cast<double>(std::clock() - stop_cpu) / CLOCKS_PER_SEC;

@@ -251,6 +251,19 @@ TEST_F(RunTest, ALogGivesTheMapOfItsFramesAndACutLogWhatIsWhole) {
               0);
     EXPECT_GE(report("twice").at("tracked").get<int>(), 50);
 
+    // Time goes back to the beginning: what comes then counts as much, and finds its place.
+    write_file(folder_ / "again.lcmlog", log + log);
+    ASSERT_EQ(run("planemap-run", path("again.lcmlog") + " --no-octomap --output " + path("again")).exit_code,
+              0);
+    EXPECT_GE(report("again").at("keyframes").get<int>(), 2 * report("whole").at("keyframes").get<int>());
+    EXPECT_EQ(report("again").at("components").size(), 1u) << report("again").at("components");
+    EXPECT_FALSE(report("again").at("losses").contains("graph")) << report("again").at("losses");
+    std::map<std::int64_t, Eigen::Vector3d> first;
+    for (const StampedPose& line : read_trajectory(folder_ / "again/trajectory.txt")) {
+        const Eigen::Vector3d position = line.world_from_camera.translation();
+        EXPECT_LT((first.try_emplace(line.utime, position).first->second - position).norm(), 0.03);
+    }
+
     // Bytes spoilt in the middle of a frame's images: that frame is counted, the others are mapped.
     std::string spoilt = log;
     for (std::size_t i = log.size() / 2; i < log.size() / 2 + 400; ++i) spoilt[i] = static_cast<char>(0xff);

@@ -2,21 +2,16 @@
 #include "bench_odometry/pose_judge.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <set>
 
 #include "core/geometry/angle.hpp"
+#include "core/geometry/covariance.hpp"
 
 namespace planemap::bench_odometry {
 
 namespace {
-
-double worst(const Eigen::Matrix3d& covariance) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance, Eigen::EigenvaluesOnly);
-    return std::sqrt(std::max(0.0, eigen.eigenvalues()(2)));
-}
 
 /// The covariance of a small motion in frame a, of the same motion in frame b.
 Matrix6d carried(const Pose& b_from_a, const Matrix6d& covariance) {
@@ -39,7 +34,8 @@ bool is_near(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance, do
 }  // namespace
 
 Spread spread_of(const Matrix6d& covariance) {
-    return {worst(covariance.topLeftCorner<3, 3>()), degrees(worst(covariance.bottomRightCorner<3, 3>()))};
+    return {largest_sigma(covariance.topLeftCorner<3, 3>()),
+            degrees(largest_sigma(covariance.bottomRightCorner<3, 3>()))};
 }
 
 bool is_unknown(const Matrix6d& covariance, const JudgeLimits& limits) {

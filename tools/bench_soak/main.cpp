@@ -13,6 +13,7 @@ constexpr int kADay = 86400;  // frames, a second apart
 
 struct Arguments : benchmark::Options {
     bool simulated = false;  // what tools/soak is called with
+    std::string world;
     SoakOptions soak;
 };
 
@@ -34,7 +35,7 @@ void add_flags(messages::Flags& flags, Arguments& arguments) {
     pipeline::PipelineOptions& pipeline = arguments.soak.pipeline;
     benchmark::add_flags(flags, arguments, "frames in all; 0: a day of them, 86,400");
     flags.add("simulated", arguments.simulated, "walk through the simulator: as without");
-    flags.add("world", arguments.sequences, "the same as --sequences");
+    flags.add("world", arguments.world, "one more name of --sequences, before which it goes");
     flags.add("every", arguments.soak.every, "frames a line");
     flags.add("period-s", arguments.soak.period_s, "seconds between the stamps of two frames");
     flags.add("octomap", pipeline.with_octomap, "build the OctoMap to compare with, too");
@@ -73,10 +74,11 @@ bool grows(const benchmark::SequenceInfo& sequence, const Arguments& arguments, 
 int run(const Arguments& arguments) {
     messages::catch_stop_signals();
     const std::vector<benchmark::SequenceInfo> sequences =
-        benchmark::parse_sequences(arguments.sequences, {});
+        benchmark::parse_sequences(arguments.world.empty() ? arguments.sequences : arguments.world, {});
     bool does_hold = true;
     benchmark::run_report(arguments, "none", [&](benchmark::Report& report) {
         report.for_each(sequences, [&](const benchmark::SequenceInfo& sequence) {
+            if (messages::stop_requested()) return;
             does_hold = !grows(sequence, arguments, report) && does_hold;
         });
     });

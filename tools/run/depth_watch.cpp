@@ -24,6 +24,7 @@ DepthWatch::DepthWatch(messages::FrameDecoder& decoder) {
     decoder.subscribe(
         status_, kWaiting,
         [this](const std::shared_ptr<const messages::Frame>& frame) {
+            count_.add(frame->depth(), frame->camera());
             views_.add(frame->depth(), frame->camera(), frame->utime(),
                        [&](int reduction) { return picture_of(*frame, reduction); });
         },

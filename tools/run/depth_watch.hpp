@@ -9,6 +9,7 @@
 #include "evaluate/soundness.hpp"
 #include "messages/frame_decoder.hpp"
 #include "messages/module_status.hpp"
+#include "run/doubts.hpp"
 
 namespace planemap {
 
@@ -21,10 +22,13 @@ class DepthWatch {
 
     /// Those that the trajectory (of the colour camera) has a pose for.
     std::vector<evaluation::PosedView> posed(const Trajectory& trajectory) const;
+    /// Of all frames.
+    const DepthCount& count() const { return count_; }
 
   private:
     messages::ModuleStatus status_{"soundness"};
     evaluation::SpreadViews views_;
+    DepthCount count_;
 };
 
 }  // namespace planemap

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "core/components.hpp"
 #include "core/files.hpp"
@@ -17,6 +18,7 @@
 #include "pipeline/pipeline.hpp"
 #include "run/accuracy.hpp"
 #include "run/depth_watch.hpp"
+#include "run/doubts.hpp"
 #include "run/growth.hpp"
 #include "run/input.hpp"
 #include "run/leaf_accuracy.hpp"
@@ -61,6 +63,13 @@ void RunClock::stop() {
 
 std::int64_t tracked_frames(const pipeline::Pipeline& pipeline) {
     const auto& estimates = pipeline.estimates();
+    if (pipeline.given_poses() != nullptr) {  // whatever was seen: a frame has its pose where they have one
+        const auto parts = pipeline.trajectories();
+        return std::accumulate(parts.begin(), parts.end(), std::int64_t{0},
+                               [](std::int64_t sum, const auto& part) {
+                                   return sum + static_cast<std::int64_t>(part.trajectory.size());
+                               });
+    }
     return std::count_if(estimates.begin(), estimates.end(), [](const auto& e) { return is_placed(e); });
 }
 
@@ -168,6 +177,17 @@ std::vector<CloudPoint> judge(pipeline::Pipeline& pipeline, const DepthWatch& de
     return sample.points();
 }
 
+std::vector<std::string> doubts_of(pipeline::Pipeline& pipeline, const RunWatch& watch) {
+    std::vector<std::string> doubts = doubts_of_depth(watch.depth.count());
+    const PlaneMap& map = pipeline.map().mapper().map();
+    if (const pipeline::GivenPoses* given = pipeline.given_poses())
+        doubts.push_back(doubt_of_given_poses(given->poses(), pipeline.estimates()));
+    if (watch.start != nullptr) doubts.push_back(doubt_of_start(*watch.start, map));
+    if (map.planes.empty()) doubts.emplace_back("no plane was found: the map is empty");
+    std::erase(doubts, "");
+    return doubts;
+}
+
 /// What a report is of, and what came to light with it.
 // As PageSource.
 // NOLINTNEXTLINE(bugprone-exception-escape)
@@ -224,6 +244,7 @@ Reported report_of(const std::string& input_name, const Input& input, pipeline::
     std::vector<std::string> warnings =
         warnings_of(estimates, pipeline.given_poses() != nullptr, pipeline.reason_lost(), report);
     for (const std::string& remark : remarks_of(pipeline)) warnings.push_back(remark);
+    for (const std::string& doubt : doubts_of(pipeline, watch)) warnings.push_back(doubt);
     report["warnings"] = warnings;
     report.update(about);
     report["stages_ms"]["report"] = whole.figures();

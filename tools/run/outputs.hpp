@@ -14,6 +14,7 @@ namespace planemap {
 class DepthWatch;
 class Growth;
 class Input;
+struct PlaneMap;
 namespace pipeline {
 class Pipeline;
 }
@@ -48,6 +49,7 @@ struct RunWatch {
     const RunClock& clock;
     const Growth& growth;
     const std::vector<double>& size_resolutions_m;  ///< of OctoMaps whose sizes are told, too
+    const PlaneMap* start;                          ///< what was started from; nullptr: nothing
 };
 
 /// What became of a run's results.

@@ -62,6 +62,9 @@ void add_run_flags(messages::Flags& flags, RunOptions& options) {
 }
 
 int rule_threads(RunOptions& options) {
+    FieldErrors errors("options");
+    thread_options(options).check(errors);
+    errors.throw_if_any();
     const int threads =
         options.threads > 0 ? options.threads : std::clamp<int>(std::thread::hardware_concurrency(), 1, 2);
     int& rebuild = options.pipeline.map.map.threads;

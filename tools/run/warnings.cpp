@@ -22,6 +22,7 @@ constexpr double kSlowStep_s = 0.2;
 constexpr double kScaleOff = 0.02;
 /// A path this many times as wide as its poses err tells its scale; of a smaller one the scale is noise.
 constexpr double kWide = 5;
+constexpr double kOther = 1.5;  // times: no odometry drifts so
 
 double median_step_s(const std::vector<OdometryEstimate>& estimates) {
     std::vector<std::int64_t> steps;
@@ -77,13 +78,21 @@ std::vector<std::string> warnings_of(const std::vector<OdometryEstimate>& estima
     if (!report.contains("accuracy")) return warnings;
     const Json& accuracy = report.at("accuracy");
     const Json scale = accuracy.value("scale", Json());
-    if (!scale.is_number() || accuracy.value("extent_m", 0.0) < kWide * accuracy.value("ate_rmse_m", 0.0))
-        return warnings;
+    if (!scale.is_number()) return warnings;
+    const double ate_m = accuracy.value("ate_rmse_m", 0.0);
+    const Json scaled_m = accuracy.value("ate_scaled_rmse_m", Json());
+    // Of a path that errs by more than its size the scale is noise, unless it is the scale that errs.
+    const bool is_other = std::abs(std::log(scale.get<double>())) > std::log(kOther) &&
+                          scaled_m.is_number() && scaled_m.get<double>() < 0.5 * ate_m;
+    if (!is_other && accuracy.value("extent_m", 0.0) < kWide * ate_m) return warnings;
     const double too_long = 1 / scale.get<double>() - 1;
     if (std::abs(scale.get<double>() - 1) > kScaleOff) {
         warnings.push_back(format("the trajectory is %.1f %% ", 100 * std::abs(too_long)) +
                            (too_long > 0 ? "too long" : "too short") +
-                           format(" against the truth (scale %.3f)", scale.get<double>()));
+                           format(" against the truth (scale %.3f)", scale.get<double>()) +
+                           (is_other && !poses_given
+                                ? ": are depth_units_per_metre and the focal lengths in camera.json right?"
+                                : ""));
     }
     return warnings;
 }
