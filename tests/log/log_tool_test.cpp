@@ -2,10 +2,12 @@
 // planemap-log as a user runs it, on logs that are whole, damaged, hostile, and none.
 #include <gmock/gmock.h>
 
+#include <bot_core/images_t.hpp>
 #include <bot_core/pose_t.hpp>
 
 #include "messages/channels.hpp"
 #include "messages/convert.hpp"
+#include "messages/image_codec.hpp"
 #include "messages/log.hpp"
 #include "tools/programs.hpp"
 
@@ -96,6 +98,31 @@ TEST_F(LogToolTest, CheckDecodesWhatItKnows) {
     EXPECT_EQ(outcome.exit_code, 1);
     EXPECT_THAT(outcome.out, AllOf(HasSubstr("event 0 on POSE, which ends at byte 52: pose_t: pose needs"),
                                    HasSubstr("event 1 on SHORT"), HasSubstr("not even a fingerprint")));
+}
+
+TEST_F(LogToolTest, CheckDecodesImages) {
+    bot_core::images_t images{};
+    images.utime = 1;
+    images.n_images = 1;
+    images.image_types = {bot_core::images_t::DEPTH_MM_ZIPPED};
+    images.images.resize(1);
+    bot_core::image_t& depth = images.images[0];
+    depth.width = 64;
+    depth.height = 48;
+    depth.data = messages::encode_zipped_depth(DepthImage(64, 48, 1500), 1);
+    depth.size = static_cast<std::int32_t>(depth.data.size());
+    messages::LogWriter log(path("a.lcmlog"));
+    log.write({0, 0, "OPENNI_FRAME", messages::to_bytes(images)});
+    depth.data[depth.data.size() / 2] ^= 0xff;
+    log.write({1, 1, "OPENNI_FRAME", messages::to_bytes(images)});
+    depth.width = depth.height = 32767;
+    log.write({2, 2, "OPENNI_FRAME", messages::to_bytes(images)});
+    log.close();
+    const Outcome outcome = run("planemap-log", "check " + path("a.lcmlog"));
+    EXPECT_EQ(outcome.exit_code, 1);
+    EXPECT_THAT(outcome.out,
+                AllOf(HasSubstr("event 1 on OPENNI_FRAME"), HasSubstr("zipped depth"), HasSubstr("event 2"),
+                      HasSubstr("no camera's"), Not(HasSubstr("event 0"))));
 }
 
 TEST_F(LogToolTest, CutTakesTimeAndChannels) {

@@ -3,6 +3,7 @@
 
 #include <bot_core/images_t.hpp>
 #include <bot_core/pose_t.hpp>
+#include <functional>
 #include <kinect/frame_msg_t.hpp>
 #include <planemap/camera_info_t.hpp>
 #include <planemap/earlier_plane_map_t.hpp>
@@ -15,7 +16,9 @@
 #include <planemap/trajectory_t.hpp>
 #include <stdexcept>
 
+#include "messages/convert.hpp"
 #include "messages/decode.hpp"
+#include "messages/image_pixels.hpp"
 #include "messages/log.hpp"
 #include "messages/log_contents.hpp"
 
@@ -35,6 +38,29 @@ void decode_any(const messages::LogEvent& event) {
     (decode_if<Types>(event), ...);
 }
 
+/// The pixels of an image; throws where its bytes do not hold them.
+void decode_pixels(const bot_core::image_t* image,
+                   const std::function<void(const bot_core::image_t&)>& decode) {
+    constexpr std::int64_t kMostPixels = 1 << 26;  // before room is made for what a damaged message says
+    if (image == nullptr) return;
+    if (std::int64_t{image->width} * image->height > kMostPixels)
+        throw messages::MessageError("an image of " + std::to_string(image->width) + " x " +
+                                     std::to_string(image->height) + " pixels is no camera's");
+    decode(*image);
+}
+
+/// What a message packs: images, and the map.
+void decode_contents(const messages::LogEvent& event) {
+    if (messages::is_a<plane_map_t>(event.bytes)) messages::plane_map_from(event.bytes);
+    if (!messages::is_a<bot_core::images_t>(event.bytes)) return;
+    const auto images = messages::decode<bot_core::images_t>(event.bytes);
+    const bool zipped = messages::depth_is_zipped(images);
+    decode_pixels(messages::find_depth(images),
+                  [&](const bot_core::image_t& depth) { messages::depth_pixels(depth, zipped); });
+    decode_pixels(messages::find_color(images),
+                  [](const bot_core::image_t& color) { messages::luma_pixels(color); });
+}
+
 /// Why an event is no message of the type that its fingerprint says; empty if it is, or the type is not ours.
 std::string fault_of(const messages::LogEvent& event) {
     if (event.bytes.size() < 8) return std::to_string(event.bytes.size()) + " bytes, not even a fingerprint";
@@ -42,6 +68,7 @@ std::string fault_of(const messages::LogEvent& event) {
         decode_any<bot_core::images_t, bot_core::pose_t, kinect::frame_msg_t, camera_info_t, keyframe_t,
                    map_size_t, module_status_t, odometry_t, planar_regions_t, plane_map_t,
                    earlier_plane_map_t, trajectory_t>(event);
+        decode_contents(event);
         return {};
     } catch (const messages::MessageError& error) {
         return error.what();

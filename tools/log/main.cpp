@@ -22,7 +22,8 @@ namespace {
 constexpr const char* kDescription =
     "What is in LCM logs, whether they are whole, parts of them, and damaged ones made whole.\n"
     "  info FILE...                channels, types, rates, gaps, duration, sizes\n"
-    "  check FILE...               damage by its place, and events that cannot be decoded; exit code 1 if "
+    "  check FILE...               damage by its place, and events, images and maps that cannot be decoded; "
+    "exit code 1 if "
     "there is any\n"
     "  cut FILE --output NEW       the events --from S --to S after the first one, on --channels REGEX\n"
     "  repair FILE --output NEW    all events that are whole; what was left out is counted\n"
