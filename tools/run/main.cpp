@@ -152,6 +152,8 @@ int run(RunOptions options, const nlohmann::ordered_json& about) {
     std::vector<std::string> problems = problems_of(options, *input, pipeline, folder, outputs);
     for (const std::string& failure : {input->failure(), error})
         if (!failure.empty()) problems.push_back(failure + "; what was mapped until then is kept");
+    if (problems.empty() && pipeline.map().mapper().map().planes.empty())
+        spdlog::warn("no plane was found: the map is empty");
     try {
         print_report(outputs);
     } catch (const std::exception& failure) {

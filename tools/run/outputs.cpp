@@ -183,7 +183,6 @@ std::vector<std::string> doubts_of(pipeline::Pipeline& pipeline, const RunWatch&
     if (const pipeline::GivenPoses* given = pipeline.given_poses())
         doubts.push_back(doubt_of_given_poses(given->poses(), pipeline.estimates()));
     if (watch.start != nullptr) doubts.push_back(doubt_of_start(*watch.start, map));
-    if (map.planes.empty()) doubts.emplace_back("no plane was found: the map is empty");
     std::erase(doubts, "");
     return doubts;
 }
