@@ -54,6 +54,7 @@ std::uint32_t checksum_of(std::span<const std::uint8_t> bytes) {
 bool SenderGuard::is_after(const Message& from, const Message& to) const {
     const auto elapsed = elapsed_us(from, to), steps = seq_steps(from, to);
     if (elapsed && (order_ == Order::kTime || !steps)) return *elapsed > 0;
+    if (elapsed && *elapsed == 0) return false;  // of one moment there is one message
     return steps.value_or(0) > 0;
 }
 
