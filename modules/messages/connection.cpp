@@ -139,7 +139,7 @@ bool Connection::connect() {
 
 /// Returns why it cannot be opened; empty: it is open. Asks without liblcm first: that would block and print.
 std::string Connection::open() {
-    if (const std::string reason = endpoint_.unreachable(); !reason.empty()) return reason;
+    if (std::string reason = endpoint_.unreachable(); !reason.empty()) return reason;
     lcm_ = std::make_unique<lcm::LCM>(endpoint_.url_for_liblcm());
     if (!lcm_->good() || lcm_->getFileno() < 0) return "cannot be opened";
     if (is_to_server()) bound_waiting(lcm_->getFileno());
