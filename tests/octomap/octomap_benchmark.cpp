@@ -22,6 +22,7 @@
 #include "messages/channels.hpp"
 #include "messages/convert.hpp"
 #include "messages/decode.hpp"
+#include "messages/process.hpp"
 #include "messages/told_status.hpp"
 #include "octomap/insertion_benchmark.hpp"
 #include "octomap/octomap_shell.hpp"
@@ -244,10 +245,15 @@ int run(int keyframes, double rate_hz, bool background) {
 }  // namespace planemap::octomap
 
 int main(int argc, char** argv) {
-    if (argc > 1 && std::string(argv[1]) == "insertion")
-        return planemap::octomap::insertion_benchmark({argv + 2, argv + argc});
-    const int keyframes = argc > 1 ? std::atoi(argv[1]) : 3000;
-    const double rate_hz = argc > 2 ? std::atof(argv[2]) : 30;
-    return planemap::octomap::run(std::max(keyframes, 1), std::max(rate_hz, 0.1),
-                                  argc <= 3 || std::atoi(argv[3]) != 0);
+    using namespace planemap::octomap;
+    return planemap::messages::run_main("octomap_benchmark", [&] {
+        const std::vector<std::string> arguments(argv + 1, argv + argc);
+        if (!arguments.empty() && arguments[0] == "insertion")
+            return insertion_benchmark({argv + 2, argv + argc});
+        const auto number = [&](std::size_t i, double otherwise) {
+            return i < arguments.size() ? std::atof(arguments[i].c_str()) : otherwise;
+        };
+        return run(std::max(static_cast<int>(number(0, 3000)), 1), std::max(number(1, 30), 0.1),
+                   number(2, 1) != 0);
+    });
 }
