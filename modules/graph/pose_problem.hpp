@@ -31,8 +31,8 @@ class PoseProblem {
     Pose pose(std::size_t node);
     Plane plane(std::size_t landmark) const { return planes_[landmark].plane(); }
     ceres::Problem& ceres() { return problem_; }
-    /// The changes of all nodes and planes that residuals speak of and that may move, in their order. (Ceres has
-    /// them by their addresses, which are other ones in each run.)
+    /// The changes of all nodes and planes that residuals speak of and that may move, in their order. (Ceres
+    /// has them by their addresses, which are other ones in each run.)
     std::vector<double*> moving();
 
   private:

@@ -106,7 +106,7 @@ class Bus {
     std::vector<std::uint8_t> buffer_;
     Complaints complaints_;
     std::int64_t session_ = 0;
-    std::int64_t reported_ = 0;        ///< the message received when report() was last called
+    std::int64_t reported_ = 0;  ///< the message received when report() was last called
     std::string reported_reason_;
     Connection connection_;  ///< last: it uses complaints_, and ends before what its handlers use
 };

@@ -68,7 +68,7 @@ class Pipeline {
     messages::FrameDecoder& decoder() { return *decoder_; }
     segmentation::SegmentationShell& segmentation() { return segmentation_; }
     odometry::OdometryShell& odometry() { return odometry_; }
-    graph::GraphShell* graph() { return graph_.get(); }             ///< nullptr without one
+    graph::GraphShell* graph() { return graph_.get(); }                   ///< nullptr without one
     const GivenPoses* given_poses() const { return given_poses_.get(); }  ///< nullptr without
     planemap::map::MapShell& map() { return *map_; }  ///< precondition: with_map, and a graph or given poses
     octomap::OctomapShell* octomap() { return octomap_.get(); }
