@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "odometry/pose_covariance.hpp"
 
-#include <Eigen/Eigenvalues>
+#include "core/geometry/covariance.hpp"
 
 namespace planemap::odometry {
 
 bool says_where(const Matrix6d& covariance) {
     constexpr double kFar_m = 0.1, kFar_rad = 0.0873, kSigmas = 3;
-    const auto worst = [](const Eigen::Matrix3d& block) {
-        return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(block, Eigen::EigenvaluesOnly).eigenvalues()(2);
-    };
-    return kSigmas * kSigmas * worst(covariance.topLeftCorner<3, 3>()) < kFar_m * kFar_m &&
-           kSigmas * kSigmas * worst(covariance.bottomRightCorner<3, 3>()) < kFar_rad * kFar_rad;
+    return kSigmas * largest_sigma(covariance.topLeftCorner<3, 3>()) < kFar_m &&
+           kSigmas * largest_sigma(covariance.bottomRightCorner<3, 3>()) < kFar_rad;
 }
 
 void PoseCovariance::start() {

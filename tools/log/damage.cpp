@@ -49,9 +49,10 @@ void decode_pixels(const bot_core::image_t* image,
     decode(*image);
 }
 
-/// What a message packs: images, and the map.
+/// Messages that pack images or a map, with these.
 void decode_contents(const messages::LogEvent& event) {
-    if (messages::is_a<plane_map_t>(event.bytes)) messages::plane_map_from(event.bytes);
+    if (messages::is_a<plane_map_t>(event.bytes) || messages::is_a<earlier_plane_map_t>(event.bytes))
+        messages::plane_map_from(event.bytes);
     if (!messages::is_a<bot_core::images_t>(event.bytes)) return;
     const auto images = messages::decode<bot_core::images_t>(event.bytes);
     const bool zipped = messages::depth_is_zipped(images);
@@ -65,9 +66,8 @@ void decode_contents(const messages::LogEvent& event) {
 std::string fault_of(const messages::LogEvent& event) {
     if (event.bytes.size() < 8) return std::to_string(event.bytes.size()) + " bytes, not even a fingerprint";
     try {
-        decode_any<bot_core::images_t, bot_core::pose_t, kinect::frame_msg_t, camera_info_t, keyframe_t,
-                   map_size_t, module_status_t, odometry_t, planar_regions_t, plane_map_t,
-                   earlier_plane_map_t, trajectory_t>(event);
+        decode_any<bot_core::pose_t, kinect::frame_msg_t, camera_info_t, keyframe_t, map_size_t,
+                   module_status_t, odometry_t, planar_regions_t, trajectory_t>(event);
         decode_contents(event);
         return {};
     } catch (const messages::MessageError& error) {

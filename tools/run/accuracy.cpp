@@ -24,11 +24,11 @@ void add_errors(const Trajectory& truth, const Trajectory& estimate, Json& repor
         return;
     }
     report["accuracy"] = evaluation::accuracy_figures(evaluation);
-    EvaluationOptions scaled;
-    scaled.scale = evaluation.ate->scale;
-    const bool is_known = std::isfinite(scaled.scale) && scaled.scale > 0;
+    const double scale = evaluation.ate->scale;
+    const bool is_known = std::isfinite(scale) && scale > 0;
     report["accuracy"]["ate_scaled_rmse_m"] =
-        is_known ? Json(evaluate(truth, estimate, scaled).ate->metres.rmse) : Json(nullptr);
+        is_known ? Json(absolute_error(truth, estimate, associate(truth, estimate, {}), scale)->metres.rmse)
+                 : Json(nullptr);
 }
 
 }  // namespace

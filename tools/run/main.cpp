@@ -6,7 +6,6 @@
 
 #include "core/standard_output.hpp"
 #include "core/trajectory_file.hpp"
-#include "map/map_file.hpp"
 #include "pipeline/pipeline.hpp"
 #include "pipeline/preparation.hpp"
 #include "run/depth_watch.hpp"
@@ -119,12 +118,11 @@ int run(RunOptions options, const nlohmann::ordered_json& about) {
     options.source.motion_channel = options.pipeline.odometry.motion.channel;
     if (!options.frames.empty()) options.source.frames = parse_frame_range(options.frames);
     const std::vector<double> size_resolutions_m = size_resolutions(options.size_resolutions);
-    std::optional<PlaneMap> start;
-    if (const auto& file = options.pipeline.map.start; !file.empty()) start = map::read_plane_map(file);
     messages::catch_stop_signals();
 
     messages::Bus bus("memq://");
     pipeline::Pipeline pipeline(bus, options.pipeline);
+    const PlaneMap start = pipeline.map().mapper().map();
     const DepthWatch depth(pipeline.decoder());
     pipeline::Preparation preparation(pipeline.decoder(), options.pipeline.segmentation, threads);
     const std::unique_ptr<Input> input = open_input(options.input, bus, options.source, &preparation);
@@ -144,9 +142,8 @@ int run(RunOptions options, const nlohmann::ordered_json& about) {
     for (const std::string& line : input->complaints()) spdlog::warn("{}", line);
     bus.complaints().log_totals();
 
-    const Outputs outputs =
-        write_outputs(folder, options.input, *input, pipeline,
-                      {depth, clock, growth, size_resolutions_m, start ? &*start : nullptr}, about);
+    const Outputs outputs = write_outputs(folder, options.input, *input, pipeline,
+                                          {depth, clock, growth, size_resolutions_m, start}, about);
     warn(folder.take_notes());
     if (!outputs.report.is_null()) warn(outputs.report.at("warnings").get<std::vector<std::string>>());
     std::vector<std::string> problems = problems_of(options, *input, pipeline, folder, outputs);

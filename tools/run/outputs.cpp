@@ -179,10 +179,9 @@ std::vector<CloudPoint> judge(pipeline::Pipeline& pipeline, const DepthWatch& de
 
 std::vector<std::string> doubts_of(pipeline::Pipeline& pipeline, const RunWatch& watch) {
     std::vector<std::string> doubts = doubts_of_depth(watch.depth.count());
-    const PlaneMap& map = pipeline.map().mapper().map();
     if (const pipeline::GivenPoses* given = pipeline.given_poses())
         doubts.push_back(doubt_of_given_poses(given->poses(), pipeline.estimates()));
-    if (watch.start != nullptr) doubts.push_back(doubt_of_start(*watch.start, map));
+    doubts.push_back(doubt_of_start(watch.start, pipeline.map().mapper().map()));
     std::erase(doubts, "");
     return doubts;
 }

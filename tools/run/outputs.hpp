@@ -49,7 +49,7 @@ struct RunWatch {
     const RunClock& clock;
     const Growth& growth;
     const std::vector<double>& size_resolutions_m;  ///< of OctoMaps whose sizes are told, too
-    const PlaneMap* start;                          ///< what was started from; nullptr: nothing
+    const PlaneMap& start;                          ///< what was started from; without planes: nothing
 };
 
 /// What became of a run's results.
